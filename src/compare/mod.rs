@@ -1,0 +1,1 @@
+//! Comparing traces: time zero, resampling, normalisation, picks and misfits.

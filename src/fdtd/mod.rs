@@ -1,0 +1,1 @@
+//! The embedded finite-difference time-domain solver.

@@ -1,0 +1,1 @@
+//! gprMax: its input files, its HDF5 files, and running it.

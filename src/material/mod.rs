@@ -1,0 +1,1 @@
+//! Dielectric models and named materials.

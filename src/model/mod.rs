@@ -1,0 +1,21 @@
+//! What an electromagnetic solver needs, and nothing else.
+//!
+//! A [`Model`] is an ordered list of objects on a grid, with materials, sources, receivers, a time window and absorbing
+//! boundaries: the content of a gprMax input file. It is built from a scene by `raster` or from anybody's `.in` file by
+//! `gprmax`, and both solvers take it. [`paint`] turns the objects into cells and edges by gprMax's rules.
+
+mod effects;
+mod grid;
+mod material;
+mod object;
+mod paint;
+mod source;
+mod spec;
+
+pub use effects::{Effect, Effects};
+pub use grid::{Grid, ceil_half_down};
+pub use material::{DebyePole, Material, MaterialId};
+pub use object::{Object, Voxels};
+pub use paint::{EdgeMaterial, PaintError, Painted, paint};
+pub use source::{Axis, Excitation, HertzianDipole, Receiver, Source, Waveform, WaveformKind};
+pub use spec::{Model, TimeWindow};

@@ -1,0 +1,102 @@
+//! The model itself.
+
+use super::{Grid, Material, MaterialId, Object, Receiver, Source, Waveform};
+
+/// How long to simulate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum TimeWindow {
+    /// A time, s.
+    Seconds(f64),
+    /// A number of time steps.
+    Iterations(usize),
+}
+
+/// All that an electromagnetic solver needs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Model {
+    /// A line for people.
+    pub title: String,
+    /// Cells and their sizes.
+    pub grid: Grid,
+    /// Factor on the Courant step, in (0, 1].
+    pub stability_factor: f64,
+    /// How long to simulate.
+    pub time_window: TimeWindow,
+    /// Absorbing cells at x0, y0, z0, xmax, ymax, zmax; `None` is gprMax's default of 10 on every side of a changing axis.
+    pub pml_cells: Option<[usize; 6]>,
+    /// Threads asked for by the model (`#omp_threads`).
+    pub threads: Option<usize>,
+    /// Materials; the first is the perfect conductor, the second free space.
+    pub materials: Vec<Material>,
+    /// Waveforms that sources refer to.
+    pub waveforms: Vec<Waveform>,
+    /// Objects, painted in order.
+    pub objects: Vec<Object>,
+    /// Sources.
+    pub sources: Vec<Source>,
+    /// Receivers.
+    pub receivers: Vec<Receiver>,
+}
+
+impl Model {
+    /// An empty model: free space, no sources, gprMax's defaults.
+    pub fn new(title: impl Into<String>, grid: Grid, time_window: TimeWindow) -> Self {
+        Self {
+            title: title.into(),
+            grid,
+            stability_factor: 1.0,
+            time_window,
+            pml_cells: None,
+            threads: None,
+            materials: vec![Material::pec(), Material::free_space()],
+            waveforms: vec![],
+            objects: vec![],
+            sources: vec![],
+            receivers: vec![],
+        }
+    }
+
+    /// Adds a material and returns its id.
+    pub fn add_material(&mut self, material: Material) -> MaterialId {
+        self.materials.push(material);
+        MaterialId((self.materials.len() - 1) as u16)
+    }
+
+    /// Looks a material up by its identifier.
+    pub fn material_named(&self, id: &str) -> Option<MaterialId> {
+        self.materials.iter().position(|material| material.id == id).map(|index| MaterialId(index as u16))
+    }
+
+    /// Time step, s.
+    pub fn time_step(&self) -> f64 {
+        self.grid.courant_step() * self.stability_factor
+    }
+
+    /// Number of time steps, and so of samples: `ceil(window/dt) + 1` for a time, exactly `n` for a count.
+    pub fn iterations(&self) -> usize {
+        match self.time_window {
+            TimeWindow::Seconds(seconds) => (seconds / self.time_step()).ceil() as usize + 1,
+            TimeWindow::Iterations(count) => count,
+        }
+    }
+
+    /// Absorbing cells at x0, y0, z0, xmax, ymax, zmax, defaults filled in.
+    pub fn absorbing_cells(&self) -> [usize; 6] {
+        let invariant = self.grid.invariant_axis();
+        self.pml_cells.unwrap_or(std::array::from_fn(|side| if Some(side % 3) == invariant { 0 } else { 10 }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Iterations that gprMax 4.0.1 reports for its window and step (`#time_window: 4e-9`, 2 mm, 2-D).
+    #[test]
+    fn iterations_are_those_of_gprmax() {
+        let grid = Grid { cells: [200, 200, 1], spacing: [0.002; 3] };
+        assert_eq!(Model::new("", grid, TimeWindow::Seconds(4e-9)).iterations(), 849);
+        assert_eq!(Model::new("", grid, TimeWindow::Seconds(15e-9)).iterations(), 3181);
+        assert_eq!(Model::new("", grid, TimeWindow::Iterations(3000)).iterations(), 3000);
+    }
+}

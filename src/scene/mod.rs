@@ -1,0 +1,1 @@
+//! Layers, packing, materials and antenna, checked once.
