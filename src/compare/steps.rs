@@ -1,0 +1,252 @@
+//! The steps that prepare a trace. Each takes a trace and gives a new one, with a [`Step`] for the report.
+
+use super::error::{CompareError, rounded};
+use super::picks::Event;
+use super::resample::resample;
+use crate::trace::AScan;
+use crate::units::Seconds;
+
+/// What was done to a trace.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[serde(rename_all = "kebab-case", tag = "step")]
+pub enum Step {
+    /// Another trace, times a factor, was taken off.
+    Subtracted {
+        /// Name of that trace.
+        reference: String,
+    },
+    /// The mean was taken off.
+    MeanRemoved {
+        /// That mean.
+        mean: f64,
+    },
+    /// The time axis was moved.
+    TimeZeroSet {
+        /// What happens at the new zero, for example `direct wave`.
+        by: String,
+        /// What was added to every time.
+        shift: Seconds,
+    },
+    /// The trace was put onto another time axis.
+    Resampled {
+        /// The step before.
+        from: Seconds,
+        /// The step after.
+        to: Seconds,
+    },
+    /// Only a window was kept.
+    Cropped {
+        /// Its first time.
+        from: Seconds,
+        /// Its last time.
+        to: Seconds,
+    },
+    /// The sign was turned.
+    Flipped,
+    /// The amplitude was divided by a number.
+    Normalised {
+        /// What that number is, for example `plate echo`.
+        by: String,
+        /// The number.
+        divisor: f64,
+    },
+}
+
+impl std::fmt::Display for Step {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Subtracted { reference } => write!(f, "`{reference}` subtracted"),
+            Self::MeanRemoved { mean } => write!(f, "mean of {mean:.3e} removed"),
+            Self::TimeZeroSet { by, shift } => write!(f, "time zero at the {by} (moved by {})", rounded(shift.si())),
+            Self::Resampled { from, to } => {
+                write!(f, "resampled from {} to {}", rounded(from.si()), rounded(to.si()))
+            }
+            Self::Cropped { from, to } => write!(f, "cropped to {} to {}", rounded(from.si()), rounded(to.si())),
+            Self::Flipped => write!(f, "polarity flipped"),
+            Self::Normalised { by, divisor } => write!(f, "divided by the {by}, {divisor:.4e}"),
+        }
+    }
+}
+
+/// Takes off the mean of the samples.
+pub fn remove_dc(trace: &AScan) -> (AScan, Step) {
+    let mean = trace.samples.iter().sum::<f64>() / trace.samples.len().max(1) as f64;
+    let samples = trace.samples.iter().map(|v| v - mean).collect();
+    (AScan { samples, ..trace.clone() }, Step::MeanRemoved { mean })
+}
+
+/// Takes off another trace, for example one in free space, which leaves the trace without its direct wave.
+///
+/// The reference is resampled onto the axis of the trace; beyond its ends it counts as zero.
+pub fn subtract_reference(trace: &AScan, reference: &AScan) -> (AScan, Step) {
+    let onto = resample(reference, trace.first_sample, trace.time_step, trace.samples.len());
+    let last = reference.time(reference.samples.len().saturating_sub(1));
+    let slack = 1e-6 * trace.time_step.si();
+    let covered = (reference.first_sample.si() - slack)..=(last + slack);
+    let pairs = trace.times().zip(&trace.samples).zip(&onto.samples);
+    let samples = pairs.map(|((t, v), r)| if covered.contains(&t) { v - r } else { *v }).collect();
+    (AScan { samples, ..trace.clone() }, Step::Subtracted { reference: reference.name.clone() })
+}
+
+/// Moves the time axis so that what happens at `event_time` happens at `becomes`.
+pub fn set_time_zero(trace: &AScan, event_time: Seconds, becomes: Seconds, by: &str) -> (AScan, Step) {
+    let shift = Seconds(becomes.si() - event_time.si());
+    let first_sample = Seconds(trace.first_sample.si() + shift.si());
+    (AScan { first_sample, ..trace.clone() }, Step::TimeZeroSet { by: by.into(), shift })
+}
+
+/// Resamples a trace over its own time window with another step, by [`resample`].
+pub fn resample_to_step(trace: &AScan, time_step: Seconds) -> (AScan, Step) {
+    let duration = trace.samples.len().saturating_sub(1) as f64 * trace.time_step.si();
+    let count = (duration / time_step.si() + 1e-9).floor() as usize + 1;
+    let step = Step::Resampled { from: trace.time_step, to: time_step };
+    (resample(trace, trace.first_sample, time_step, count), step)
+}
+
+/// Keeps the samples between two times, both included.
+///
+/// # Errors
+/// Fewer than two samples inside.
+pub fn crop(trace: &AScan, from: Seconds, to: Seconds) -> Result<(AScan, Step), CompareError> {
+    let slack = 1e-6 * trace.time_step.si();
+    let inside = |k: &usize| (from.si() - slack..=to.si() + slack).contains(&trace.time(*k));
+    let indices: Vec<usize> = (0..trace.samples.len()).filter(inside).collect();
+    let (Some(&start), Some(&end), 2..) = (indices.first(), indices.last(), indices.len()) else {
+        return Err(CompareError::Window {
+            name: trace.name.clone(),
+            from,
+            to,
+            samples: indices.len(),
+            first: rounded(trace.first_sample.si()),
+            last: rounded(trace.time(trace.samples.len().saturating_sub(1))),
+            least: 2,
+        });
+    };
+    let samples = trace.samples[start..=end].to_vec();
+    let step = Step::Cropped { from: Seconds(trace.time(start)), to: Seconds(trace.time(end)) };
+    Ok((AScan { samples, first_sample: Seconds(trace.time(start)), ..trace.clone() }, step))
+}
+
+/// Turns the sign of every sample.
+pub fn flip(trace: &AScan) -> (AScan, Step) {
+    (AScan { samples: trace.samples.iter().map(|v| -v).collect(), ..trace.clone() }, Step::Flipped)
+}
+
+/// Divides every sample by `divisor`, which should not be zero.
+pub fn normalise(trace: &AScan, divisor: f64, by: &str) -> (AScan, Step) {
+    let samples = trace.samples.iter().map(|v| v / divisor).collect();
+    (AScan { samples, ..trace.clone() }, Step::Normalised { by: by.into(), divisor })
+}
+
+/// Time of the first local extremum of at least a quarter of the largest amplitude, between samples by a parabola.
+///
+/// # Errors
+/// No such extremum: the trace only rises or falls.
+pub fn first_peak(trace: &AScan) -> Result<Seconds, CompareError> {
+    let (samples, least) = (&trace.samples, 0.25 * trace.peak());
+    let is_peak = |k: &usize| {
+        let (left, middle, right) = (samples[k - 1].abs(), samples[*k].abs(), samples[k + 1].abs());
+        middle >= least && left < middle && middle >= right
+    };
+    let found = (1..samples.len().saturating_sub(1)).find(is_peak).ok_or_else(|| CompareError::NoEvent {
+        name: trace.name.clone(),
+        event: Event::DirectWave,
+        purpose: "set the time zero by",
+        reason: super::picks::NoEcho::NoPeakInWindow {
+            from: rounded(trace.first_sample.si()),
+            to: rounded(trace.time(samples.len().saturating_sub(1))),
+        },
+    })?;
+    let (offset, _) = super::spectrum::vertex(samples, found);
+    Ok(Seconds(trace.time(found) + offset * trace.time_step.si()))
+}
+
+#[cfg(test)]
+pub(in crate::compare) mod test_traces {
+    use crate::trace::{AScan, Component};
+    use crate::units::Seconds;
+
+    /// A Ricker pulse of 1 GHz with its unit peak at zero.
+    pub fn ricker(t: f64) -> f64 {
+        let a = (std::f64::consts::PI * 1e9 * t).powi(2);
+        (1.0 - 2.0 * a) * (-a).exp()
+    }
+
+    /// A trace of a function of time.
+    pub fn trace(name: &str, count: usize, dt: f64, of: impl Fn(f64) -> f64) -> AScan {
+        AScan {
+            samples: (0..count).map(|k| of(k as f64 * dt)).collect(),
+            time_step: Seconds(dt),
+            first_sample: Seconds(0.0),
+            component: Component::Ez,
+            position: None,
+            name: name.into(),
+        }
+    }
+
+    /// White noise of unit standard deviation: sums of twelve uniform numbers.
+    pub fn noise(count: usize, seed: u64) -> Vec<f64> {
+        use rand::{RngExt as _, SeedableRng as _};
+        let mut random = rand_pcg::Pcg64::seed_from_u64(seed);
+        (0..count).map(|_| (0..12).map(|_| random.random::<f64>()).sum::<f64>() - 6.0).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::test_traces::{ricker, trace};
+    use super::*;
+
+    #[test]
+    fn the_mean_goes_and_only_the_mean() {
+        let (clean, step) = remove_dc(&trace("offset", 1000, 1e-11, |t| 0.25 + ricker(t - 5e-9)));
+        assert!(clean.samples.iter().sum::<f64>().abs() < 1e-12);
+        assert!(matches!(step, Step::MeanRemoved { mean } if (mean - 0.25).abs() < 1e-6), "{step:?}");
+    }
+
+    /// The free-space run has another step and is shorter; what is left is the echo, to the 1e-5 of the resampling.
+    #[test]
+    fn the_direct_wave_goes_with_the_free_space_run() {
+        let full = trace("full", 1000, 1e-11, |t| ricker(t - 2e-9) + 0.1 * ricker(t - 7e-9));
+        let free = trace("free space", 300, 1.7e-11, |t| ricker(t - 2e-9));
+        let (left, step) = subtract_reference(&full, &free);
+        assert!(left.times().zip(&left.samples).all(|(t, v)| (v - 0.1 * ricker(t - 7e-9)).abs() < 2e-5));
+        assert_eq!(step.to_string(), "`free space` subtracted");
+    }
+
+    #[test]
+    fn crop_and_time_zero_move_what_they_say() {
+        let pulse = trace("pulse", 1000, 1e-11, |t| ricker(t - 2.003e-9));
+        let peak = first_peak(&pulse).unwrap();
+        // The first extremum with a quarter of the peak is the side lobe, sqrt(3/2)/(pi f) = 0.38985 ns ahead.
+        assert!((peak.si() - (2.003e-9 - 0.389_848e-9)).abs() < 1e-12, "{peak}");
+        let (zeroed, step) = set_time_zero(&pulse, Seconds(2.003e-9), Seconds(0.0), "first peak");
+        assert!((zeroed.first_sample.si() + 2.003e-9).abs() < 1e-20);
+        assert_eq!(step.to_string(), "time zero at the first peak (moved by -2.003 ns)");
+        let (window, step) = crop(&zeroed, Seconds(-1e-9), Seconds(1e-9)).unwrap();
+        assert_eq!(window.samples.len(), 200);
+        assert_eq!(step.to_string(), "cropped to -0.993 ns to 0.997 ns");
+        assert_eq!(
+            crop(&pulse, Seconds(20e-9), Seconds(30e-9)).unwrap_err().to_string(),
+            "the window 20 ns to 30 ns holds 0 samples of `pulse` (0 ns to 9.99 ns): at least 2 are needed"
+        );
+    }
+
+    #[test]
+    fn a_new_step_keeps_the_window() {
+        let pulse = trace("pulse", 1001, 1e-11, |t| ricker(t - 5e-9));
+        let (coarse, step) = resample_to_step(&pulse, Seconds(4e-11));
+        assert_eq!(coarse.samples.len(), 251);
+        assert!(coarse.times().zip(&coarse.samples).all(|(t, v)| (v - ricker(t - 5e-9)).abs() < 1e-5));
+        assert_eq!(step.to_string(), "resampled from 0.01 ns to 0.04 ns");
+    }
+
+    #[test]
+    fn a_ramp_has_no_first_peak() {
+        let ramp = trace("ramp", 10, 1e-11, |t| t);
+        assert_eq!(
+            first_peak(&ramp).unwrap_err().to_string(),
+            "`ramp` has no direct wave to set the time zero by: the envelope has no peak between 0 ns and 0.09 ns\n\nhint: give its time, or choose another rule"
+        );
+    }
+}

@@ -1,0 +1,105 @@
+//! Traces that cannot be compared, each with its message word for word.
+
+use ballast_gpr::compare::{CompareOptions, Normalisation, Polarity, TimeZero, compare};
+use ballast_gpr::trace::{AScan, Component};
+use ballast_gpr::units::Seconds;
+
+fn trace(name: &str, samples: Vec<f64>) -> AScan {
+    AScan {
+        samples,
+        time_step: Seconds(1e-11),
+        first_sample: Seconds(0.0),
+        component: Component::Ez,
+        position: None,
+        name: name.into(),
+    }
+}
+
+fn good() -> AScan {
+    let ricker = |t: f64| {
+        let a = (std::f64::consts::PI * t).powi(2);
+        (1.0 - 2.0 * a) * (-a).exp()
+    };
+    trace("good", (0..1000).map(|k| ricker(f64::from(k) * 0.01 - 4.0)).collect())
+}
+
+fn message(b: &AScan) -> String {
+    compare(&good(), b, &CompareOptions::default()).unwrap_err().to_string()
+}
+
+#[test]
+fn traces_that_are_none() {
+    assert_eq!(message(&trace("empty", vec![])), "trace `empty` has no samples");
+    assert_eq!(message(&trace("one", vec![1.0])), "trace `one` has one sample: at least two are needed");
+    let zero =
+        "is zero everywhere: there is nothing to compare\n\nhint: is it the field component that the source excites?";
+    assert_eq!(message(&trace("zero", vec![0.0; 100])), format!("trace `zero` {zero}"));
+    assert_eq!(message(&trace("flat", vec![0.1; 100])), format!("trace `flat` {zero}"));
+    let mut bad = good();
+    bad.name = "bad".into();
+    bad.samples[250] = f64::NAN;
+    assert_eq!(
+        message(&bad),
+        "trace `bad` holds NaN at sample 250 (2.5 ns)\n\nhint: a solver that has diverged writes such values"
+    );
+    bad.samples[30] = f64::INFINITY;
+    assert_eq!(
+        message(&bad),
+        "trace `bad` holds inf at sample 30 (0.3 ns)\n\nhint: a solver that has diverged writes such values"
+    );
+}
+
+#[test]
+fn time_axes_that_do_not_fit() {
+    let still = AScan { time_step: Seconds(0.0), name: "still".into(), ..good() };
+    assert_eq!(
+        message(&still),
+        "trace `still` has the time step 0 ns from 0 ns: the step should be above zero and both finite"
+    );
+    let slow = AScan { time_step: Seconds(1e-2), name: "slow".into(), ..good() };
+    assert_eq!(
+        message(&slow),
+        "the time steps of `good` (0.01 ns) and `slow` (10000000 ns) differ by a factor of 1000000000, more than 1000\n\nhint: is one of the time columns in seconds and the other in nanoseconds?"
+    );
+    let late = AScan { first_sample: Seconds(20e-9), name: "late".into(), ..good() };
+    assert_eq!(
+        message(&late),
+        "`good` (0 ns to 9.99 ns) and `late` (20 ns to 29.99 ns) share 0 samples: at least 8 are needed\n\nhint: set the time zero of both, for example by the direct wave"
+    );
+    let options = CompareOptions { window: Some((Seconds(4e-9), Seconds(4.03e-9))), ..Default::default() };
+    assert_eq!(
+        compare(&good(), &good(), &options).unwrap_err().to_string(),
+        "the window 4 ns to 4.03 ns holds 4 samples of `good` (4 ns to 4.03 ns): at least 8 are needed"
+    );
+}
+
+#[test]
+fn steps_that_need_an_echo_say_when_there_is_none() {
+    let options = CompareOptions { normalisation: Normalisation::PlateEcho, ..Default::default() };
+    assert_eq!(
+        compare(&good(), &good(), &options).unwrap_err().to_string(),
+        "`good` has no plate echo to normalise by: no echo follows the one before it\n\nhint: give its time, or choose another rule"
+    );
+    let options = CompareOptions {
+        time_zero: TimeZero::DirectWave,
+        reference_a: Some(trace("free", vec![0.1; 1000])),
+        ..Default::default()
+    };
+    assert_eq!(
+        compare(&good(), &good(), &options).unwrap_err().to_string(),
+        "`good` has no direct wave to set the time zero by: the direct wave is not in this trace\n\nhint: give its time, or choose another rule"
+    );
+}
+
+/// Polarity: auto turns an inverted trace, keep leaves it and shows a correlation of -1.
+#[test]
+fn polarity_is_turned_only_when_asked() {
+    let inverted = AScan { samples: good().samples.iter().map(|v| -v).collect(), ..good() };
+    let found = |polarity| {
+        let options = CompareOptions { polarity, ..Default::default() };
+        compare(&good(), &inverted, &options).unwrap().metrics.cross_correlation.maximum
+    };
+    assert!((found(Polarity::Auto) - 1.0).abs() < 1e-9);
+    assert!((found(Polarity::Flip) - 1.0).abs() < 1e-9);
+    assert!((found(Polarity::Keep) + 1.0).abs() < 1e-9);
+}
