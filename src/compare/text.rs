@@ -202,7 +202,7 @@ pub fn read_trace(text: &str, name: &str, options: &TextOptions) -> Result<AScan
     let largest = rows.iter().fold(0.0_f64, |m, row| m.max(row.time.abs()));
     let by_size = if largest < SECONDS_BELOW { 1.0 } else { 1e-9 };
     let unit = header_unit.or(comment_unit).unwrap_or(by_size);
-    let (first, step, samples) = onto_even_axis(&rows, 10_f64.powi(-decimals), unit, name, options.resample)?;
+    let (first, step, samples) = onto_even_axis(&rows, decimals, unit, name, options.resample)?;
     Ok(AScan {
         samples,
         time_step: Seconds(step),
@@ -216,7 +216,7 @@ pub fn read_trace(text: &str, name: &str, options: &TextOptions) -> Result<AScan
 /// First time and step in s, and the samples.
 fn onto_even_axis(
     rows: &[Row],
-    quantum: f64,
+    decimals: i32,
     unit: f64,
     name: &str,
     resample: Option<Seconds>,
@@ -234,9 +234,14 @@ fn onto_even_axis(
             return Err(TextError::ResampleStep { name: name.into(), step: wished, samples });
         }
         let step = wished.si() / unit;
-        return Ok((first * unit, wished.si(), spline(rows, first, step, samples as usize)));
+        return Ok((scaled(first, unit), wished.si(), spline(rows, first, step, samples as usize)));
     }
-    let step = (last - first) / (rows.len() - 1) as f64;
+    let (per_unit, quantum) = (10_f64.powi(decimals), 10_f64.powi(-decimals));
+    let mean_step = (last - first) / (rows.len() - 1) as f64;
+    // A step that was written with these digits is taken with these digits: 24.99/2499 is 0.01, not the number after it.
+    let written_step = (mean_step * per_unit).round() / per_unit;
+    let same = (written_step - mean_step).abs() * rows.len() as f64 <= 1e-9 * mean_step;
+    let step = if same { written_step } else { mean_step };
     let expected = |k: usize| first + k as f64 * step;
     let off = |k: usize| (rows[k].time - expected(k)).abs() / step;
     let worst = (0..rows.len()).map(off).fold(0.0, f64::max);
@@ -252,9 +257,15 @@ fn onto_even_axis(
     Err(TextError::Uneven { name: name.into(), line, time, expected: expected(k), step })
 }
 
-/// `value * unit`, by division where the unit is a negative power of ten: 0.01 ns is then the nearest number to 1e-11.
+/// `value * unit` with the decimal point moved before rounding, so that 0.01 ns is the number nearest to 1e-11 s.
 fn scaled(value: f64, unit: f64) -> f64 {
-    value / (1.0 / unit).round()
+    let power = unit.log10().round() as i32;
+    let text = format!("{value:e}");
+    let moved = text.split_once('e').and_then(|(mantissa, exponent)| {
+        let exponent: i32 = exponent.parse().ok()?;
+        format!("{mantissa}e{}", exponent + power).parse().ok()
+    });
+    moved.unwrap_or(value * unit)
 }
 
 /// Natural cubic spline through the rows, at `count` times from `first` every `step`.
