@@ -3,6 +3,7 @@
 use ballast_gpr::compare::{CompareOptions, Normalisation, Polarity, TimeZero, compare};
 use ballast_gpr::trace::{AScan, Component};
 use ballast_gpr::units::Seconds;
+use proptest::prelude::*;
 
 fn trace(name: &str, samples: Vec<f64>) -> AScan {
     AScan {
@@ -71,6 +72,13 @@ fn time_axes_that_do_not_fit() {
         compare(&good(), &good(), &options).unwrap_err().to_string(),
         "the window 4 ns to 4.03 ns holds 4 samples of `good` (4 ns to 4.03 ns): at least 8 are needed"
     );
+    let options = CompareOptions { time_step: Some(Seconds(-1e-12)), ..Default::default() };
+    assert_eq!(
+        compare(&good(), &good(), &options).unwrap_err().to_string(),
+        "a common time step of -0.001 ns is out of range: it should be above zero and make at most 10000000 samples"
+    );
+    let options = CompareOptions { time_step: Some(Seconds(1e-17)), ..Default::default() };
+    assert!(compare(&good(), &good(), &options).is_err());
 }
 
 #[test]
@@ -102,4 +110,27 @@ fn polarity_is_turned_only_when_asked() {
     assert!((found(Polarity::Auto) - 1.0).abs() < 1e-9);
     assert!((found(Polarity::Flip) - 1.0).abs() < 1e-9);
     assert!((found(Polarity::Keep) + 1.0).abs() < 1e-9);
+}
+
+proptest! {
+    /// Whatever finite numbers two traces hold, the answer is an error or metrics within their ranges.
+    #[test]
+    fn any_two_traces_give_an_error_or_sound_metrics(
+        a in prop::collection::vec(prop_oneof![-1.0..1.0_f64, Just(0.0), Just(1e300), Just(-1e-300)], 0..60),
+        b in prop::collection::vec(-1e3..1e3_f64, 0..60),
+        step in 1e-13..1e-9_f64,
+        first in -1e-9..1e-9_f64,
+        rule in 0..4_usize,
+    ) {
+        let (a, b) = (trace("a", a), AScan { time_step: Seconds(step), first_sample: Seconds(first), ..trace("b", b) });
+        let time_zero = [TimeZero::Keep, TimeZero::DirectWave, TimeZero::FirstPeak, TimeZero::Given { a: Seconds(0.0), b: Seconds(1e-10) }][rule];
+        if let Ok(found) = compare(&a, &b, &CompareOptions { time_zero, ..Default::default() }) {
+            let m = found.metrics;
+            for value in [m.cross_correlation.maximum, m.zero_lag_correlation, m.envelope_correlation, m.spectral_correlation] {
+                prop_assert!((-1.0..=1.0).contains(&value), "{m:?}");
+            }
+            prop_assert!(m.rmse >= 0.0 && m.relative_l2 >= 0.0 && m.peak_frequency_shift.si().is_finite(), "{m:?}");
+            prop_assert_eq!(found.a.samples.len(), found.b.samples.len());
+        }
+    }
 }

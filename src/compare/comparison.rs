@@ -139,6 +139,8 @@ pub struct Comparison {
 
 /// Fewest samples that two traces must share.
 const LEAST_SAMPLES: usize = 8;
+/// Most samples on the common axis.
+const MOST_SAMPLES: usize = 10_000_000;
 /// Largest ratio of time steps: a radar at 50 ps against a solver at 0.1 ps is 500.
 const LARGEST_STEP_RATIO: f64 = 1000.0;
 
@@ -148,9 +150,23 @@ const LARGEST_STEP_RATIO: f64 = 1000.0;
 /// cover), window, sign of the second trace, normalisation; then picks, envelopes, spectra and metrics. What was done is in
 /// [`Comparison::steps_a`] and [`Comparison::steps_b`].
 ///
+/// ```
+/// use ballast_gpr::compare::{compare, text, CompareOptions};
+/// let pulse = |at: f64| {
+///     let line = |k: i32| {
+///         let t = f64::from(k) * 0.01;
+///         format!("{t:.2} {}\n", (-(t - at).powi(2) / 0.02).exp())
+///     };
+///     text::read_trace(&(0..1000).map(line).collect::<String>(), "pulse", &Default::default())
+/// };
+/// let found = compare(&pulse(4.0)?, &pulse(4.697)?, &CompareOptions::default())?;
+/// assert!((found.metrics.cross_correlation.lag.si() - 0.697e-9).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// Traces that are empty, of one sample, zero, not finite or without a time axis; steps a thousandfold apart; fewer than
-/// eight samples in common or in the window; a time zero or normalisation by an echo that is not there.
+/// eight samples in common or in the window; a common step that makes over ten million samples; a time zero or normalisation by an echo that is not there.
 pub fn compare(a: &AScan, b: &AScan, options: &CompareOptions) -> Result<Comparison, CompareError> {
     check(a)?;
     check(b)?;
@@ -355,10 +371,13 @@ fn onto_common_axis(a: &mut Prepared, b: &mut Prepared, step: Option<Seconds>) -
     const SLACK: f64 = 1e-6;
     let end = |trace: &AScan| trace.time(trace.samples.len() - 1);
     let finer = if b.trace.time_step < a.trace.time_step { &b.trace } else { &a.trace };
-    let wished = step.filter(|dt| dt.si() > 0.0 && dt.si().is_finite());
-    let dt = wished.unwrap_or(finer.time_step).si();
+    let dt = step.unwrap_or(finer.time_step).si();
     let from = a.trace.first_sample.si().max(b.trace.first_sample.si());
     let to = end(&a.trace).min(end(&b.trace));
+    let samples = (to - from).abs() / dt;
+    if !(dt > 0.0 && dt.is_finite() && samples <= MOST_SAMPLES as f64) {
+        return Err(CompareError::CommonStep { step: Seconds(dt), most: MOST_SAMPLES });
+    }
     let start = finer.first_sample.si() + ((from - finer.first_sample.si()) / dt - SLACK).ceil().max(0.0) * dt;
     let count = if to + SLACK * dt < start { 0 } else { ((to - start) / dt + SLACK).floor() as usize + 1 };
     if count < LEAST_SAMPLES {

@@ -69,6 +69,14 @@ pub enum CompareError {
         /// The largest that is taken.
         limit: f64,
     },
+    /// A common step that makes no or too many samples.
+    #[error("a common time step of {step} is out of range: it should be above zero and make at most {most} samples")]
+    CommonStep {
+        /// The step asked for.
+        step: Seconds,
+        /// The most samples that are made.
+        most: usize,
+    },
     /// No time, or too little, that both traces cover.
     #[error(
         "`{a}` ({from_a} to {to_a}) and `{b}` ({from_b} to {to_b}) share {shared} samples: at least {least} are needed\n\nhint: set the time zero of both, for example by the direct wave"

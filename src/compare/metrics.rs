@@ -114,7 +114,7 @@ pub fn correlation(a: &AScan, b: &AScan) -> Result<f64, CompareError> {
 
 /// Computes `||b - a|| / ||a||` over the samples: 0 for equal traces, infinite where only `a` is zero.
 ///
-/// The number for "two solvers agree": `a` is the reference.
+/// The number for "two solvers agree": `a` is the reference. No step is applied; see [`compare`](super::compare) for that.
 ///
 /// # Errors
 /// Different steps or lengths, no samples.

@@ -313,7 +313,9 @@ mod tests {
         }
     }
 
-    /// In noise of 2 % (standard deviation) the picks stay within 0.05 ns of the pulses.
+    /// White noise of standard deviation 0.01: the top of a pulse of height A falls by two of these within
+    /// sqrt(0.04/(6 pi^2 A)) ns, 0.075 ns for the surface and 0.037 ns for the plate; twice that is allowed. Noise alone gives
+    /// no picks in twenty traces.
     #[test]
     fn noise_moves_the_picks_but_makes_none() {
         let mut noisy = three_pulses();
@@ -321,7 +323,10 @@ mod tests {
             *v += 0.01 * e;
         }
         let picks = pick_echoes(&noisy, &ExpectedEchoes::default());
-        assert!((time(&picks.surface) - 6.003).abs() < 0.15 && (time(&picks.plate) - 11.0074).abs() < 0.1, "{picks:?}");
+        assert!(
+            (time(&picks.surface) - 6.003).abs() < 0.15 && (time(&picks.plate) - 11.0074).abs() < 0.075,
+            "{picks:?}"
+        );
         for seed in 0..20 {
             let only = AScan { samples: noise(2500, seed), ..three_pulses() };
             let picks = pick_echoes(&only, &ExpectedEchoes::default());
