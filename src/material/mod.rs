@@ -23,7 +23,7 @@ pub use dielectric::{DebyePole, Dielectric, DielectricError, WATER, water};
 pub use effective_debye::{FitError, FittedDielectric, debye_fit, effective_debye};
 pub use equivalent_2d::{Equivalent2d, Equivalent2dError, JudgedBy, equivalent_2d};
 pub use fouling::{Bed, Compaction, FinesPassing, FoulingIndices, RelativeFoulingClass, SeligClass, selig_from_height};
-pub use fouling_amount::{BottomFilledBed, Fouling, FoulingAmount, FoulingError};
+pub use fouling_amount::{BottomFilledBed, Described, Fouling, FoulingAmount, FoulingError};
 pub use mixing::{MixError, MixingModel, mix, mix_dielectrics};
 pub use named::{Confidence, NamedMaterial, UnknownMaterial, all_named, named};
 pub use soil::{Peplinski, SoilError, topp_permittivity, topp_water_content};
