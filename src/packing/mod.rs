@@ -8,6 +8,8 @@
 //! Where the paper's print is at odds with itself the code says so at the place: eqs. 15, 22, 23, 25–27, the order inside
 //! a strip, and the sizes a sieve stands for ([`grading::ClassReading`]).
 
+pub mod calibrate;
+pub mod export;
 pub mod grading;
 
 mod bed;

@@ -59,14 +59,14 @@ pub(super) fn place(
 ) -> Result<Placed, PackingError> {
     let largest = classes.iter().map(|class| class.largest.si()).fold(0.0, f64::max);
     if largest > width.min(height) {
-        let (diameter, width, height) = (Metres(largest), Metres(width), Metres(height));
+        let to_a_tenth_of_a_millimetre = |length: f64| Metres((length * 1e4).round() / 1e4);
+        let diameter = Metres(largest);
+        let (width, height) = (to_a_tenth_of_a_millimetre(width), to_a_tenth_of_a_millimetre(height));
         return Err(PackingError::StoneLargerThanTank { diameter, width, height });
     }
     let wanted = |class: &SizeClass| class.share.si() * solid_share * width * height;
     for class in classes {
-        let (smallest, largest) = (class.smallest.si(), class.largest.si());
-        let mean_area = std::f64::consts::PI / 12.0 * (smallest * smallest + smallest * largest + largest * largest);
-        let expected = (wanted(class) / mean_area) as u64;
+        let expected = expected_stones(class, wanted(class)).round() as u64;
         if expected > MOST_STONES {
             let (smallest, largest) = (class.smallest, class.largest);
             return Err(PackingError::TooManyStones { expected, limit: MOST_STONES, smallest, largest });
@@ -90,6 +90,12 @@ pub(super) fn place(
     Ok(Placed { discs: grid.into_discs(), classes: filled })
 }
 
+/// How many stones of a class fill an area, for diameters spread evenly over the class.
+fn expected_stones(class: &SizeClass, area: f64) -> f64 {
+    let (smallest, largest) = (class.smallest.si(), class.largest.si());
+    area / (std::f64::consts::PI / 12.0 * (smallest * smallest + smallest * largest + largest * largest))
+}
+
 /// Fills one class; on a jam returns the share of its area that was placed.
 fn fill(
     class: &SizeClass,
@@ -99,7 +105,7 @@ fn fill(
     random: &mut Pcg64,
 ) -> Result<ClassFilled, f64> {
     let (smallest, largest) = (class.smallest.si(), class.largest.si());
-    let mut cells = VoidCells::new(domain.0, domain.1, 0.5 * smallest);
+    let mut cells = VoidCells::new(domain.0, domain.1, 0.5 * smallest, expected_stones(class, wanted_area));
     let mut filled = ClassFilled { class: *class, wanted_area, placed_area: 0.0, stones: 0, redrawn: 0 };
     let mut largest_step = 100_u32;
     while filled.placed_area <= wanted_area {

@@ -11,8 +11,10 @@ use rand_pcg::Pcg64;
 
 use crate::geometry::NeighbourGrid;
 
-/// Cells are split at most so often: 2⁻¹⁶ of a radius, under a micrometre for a stone of 20 mm.
-const DEEPEST: usize = 16;
+/// Cells are split at most so often: a millionth of the first cell.
+const DEEPEST: usize = 20;
+/// Most first cells along a side, so that cell numbers stay within 32 bits when split to the end.
+const MOST_ALONG: f64 = 2048.0;
 /// Free space below this share of the stone's own area counts as none.
 const NEGLIGIBLE: f64 = 1e-10;
 
@@ -39,10 +41,12 @@ pub(super) enum Draw {
 }
 
 impl VoidCells {
-    /// Covers the places of centres in a rectangle from the origin with cells of about two radii.
-    pub(super) fn new(domain_width: f64, domain_height: f64, radius: f64) -> Self {
+    /// Covers the places of centres in a rectangle from the origin with cells of two radii, or larger ones where that
+    /// would make many more cells than the `stones` that are to come.
+    pub(super) fn new(domain_width: f64, domain_height: f64, radius: f64, stones: f64) -> Self {
         let (across, up) = ((domain_width - 2.0 * radius).max(0.0), (domain_height - 2.0 * radius).max(0.0));
-        let count = |length: f64| ((length / (2.0 * radius)).ceil() as u32).clamp(1, 1 << 15);
+        let side = (2.0 * radius).max((across * up / (1024.0 + 16.0 * stones)).sqrt());
+        let count = |length: f64| (length / side).ceil().clamp(1.0, MOST_ALONG) as u32;
         let (columns, rows) = (count(across), count(up));
         let mut levels = vec![Vec::new(); DEEPEST + 1];
         levels[0] = (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j))).collect();
@@ -169,11 +173,11 @@ mod tests {
         let count = |plain: bool| {
             let mut random = Pcg64::seed_from_u64(5);
             let mut tiles = [0.0_f64; 16];
-            let mut cells = VoidCells::new(1.0, 1.0, 0.08);
+            let mut cells = VoidCells::new(1.0, 1.0, 0.08, 100.0);
             let mut done = 0;
             while done < draws {
                 if plain {
-                    cells = VoidCells::new(1.0, 1.0, 0.08);
+                    cells = VoidCells::new(1.0, 1.0, 0.08, 100.0);
                 }
                 if let Draw::Fits(x, y) = cells.draw(radius, &placed, &mut random) {
                     tiles[(y * 4.0) as usize * 4 + (x * 4.0) as usize] += 1.0;
@@ -196,7 +200,7 @@ mod tests {
         placed.insert(Disc { x: 0.5, y: 0.5, radius: 0.3 });
         let outcome = |radius: f64| {
             let mut random = Pcg64::seed_from_u64(1);
-            let mut cells = VoidCells::new(1.0, 1.0, radius);
+            let mut cells = VoidCells::new(1.0, 1.0, radius, 100.0);
             for _ in 0..100_000 {
                 match cells.draw(radius, &placed, &mut random) {
                     Draw::Fits(..) => return Some(true),
