@@ -198,3 +198,19 @@ fn every_grading_packs_the_tank() {
         assert!(solid > 0.0 && solid <= most, "{name}: {solid} of {most}");
     });
 }
+
+/// A scene holds the whole input: TOML gives it back unchanged, whatever rule and grading.
+#[test]
+fn an_input_is_written_to_toml_and_read_back() {
+    let text = "width = \"1.5m\"\nheight = \"48cm\"\nvoids = \"42%\"\ngrading = \"benedetto2018\"\n";
+    let input: RsaInput = toml::from_str(text).unwrap();
+    assert_eq!(input, RsaInput::benedetto2018().unwrap());
+    let fit = "class_reading = \"one-sieve-up\"\ninput = { fit = { alpha = \"25cm\", beta = \"21cm\" } }\n";
+    let given = "input = { explicit = { height = \"55cm\", solid_share = \"50%\" } }\nstrip = \"1cm\"\n";
+    for more in ["", fit, given, "input = \"published\"\n"] {
+        let input: RsaInput = toml::from_str(&format!("{text}{more}")).unwrap();
+        assert_eq!(toml::from_str::<RsaInput>(&toml::to_string(&input).unwrap()).unwrap(), input, "{more}");
+    }
+    let error = toml::from_str::<RsaInput>(&text.replace("42%", "0%")).unwrap_err().to_string();
+    assert!(error.contains("voids of 0% leave no space between the stones"), "{error}");
+}

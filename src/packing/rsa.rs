@@ -154,3 +154,29 @@ fn find_centre(radius: f64, cells: &mut VoidCells, grid: &NeighbourGrid, random:
     }
     None
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::SeedableRng as _;
+
+    /// A unit square with a disc of radius 0.3 in its middle. The largest disc that fits beside it lies in a corner and
+    /// touches two walls: √2 (0.5 - r) = 0.3 + r, r = 0.16863. The cells are those of a class that begins at 0.05, so that
+    /// refusals run out and cells for just this radius are made.
+    #[test]
+    fn the_last_place_for_a_large_stone_of_a_class_is_found_or_disproven() {
+        let corner = (0.5 * 2.0_f64.sqrt() - 0.3) / (1.0 + 2.0_f64.sqrt());
+        let mut grid = NeighbourGrid::new(1.0, 1.0, 0.3);
+        grid.insert(Disc { x: 0.5, y: 0.5, radius: 0.3 });
+        let mut corners = [0; 4];
+        for seed in 0..40 {
+            let mut random = Pcg64::seed_from_u64(seed);
+            let mut cells = VoidCells::new(1.0, 1.0, 0.05, 50.0);
+            assert_eq!(find_centre(1.001 * corner, &mut cells, &grid, &mut random), None);
+            let (x, y) = find_centre(0.995 * corner, &mut cells, &grid, &mut random).unwrap();
+            corners[usize::from(x > 0.5) + 2 * usize::from(y > 0.5)] += 1;
+        }
+        // Each corner with probability 1/4: fewer than 2 of 40 in a given one happens once in 7 000 times.
+        assert!(corners.iter().all(|&count| count >= 2), "{corners:?}");
+    }
+}

@@ -43,9 +43,12 @@ pub fn dxf(packing: &Packing) -> Result<Vec<u8>, PackingError> {
     let mut drawing = Drawing::new();
     drawing.header.version = AcadVersion::R2000;
     drawing.header.default_drawing_units = Units::Meters;
+    // The start of 1970 by the clock of any time zone: the file holds clock time, so a fixed instant would not do.
     drawing.header.creation_date = Default::default();
+    drawing.header.creation_date +=
+        drawing.header.creation_date.naive_utc() - drawing.header.creation_date.naive_local();
     drawing.header.creation_date_universal = Default::default();
-    drawing.header.update_date = Default::default();
+    drawing.header.update_date = drawing.header.creation_date;
     drawing.header.update_date_universal = Default::default();
     drawing.header.fingerprint_guid = Default::default();
     drawing.header.version_guid = Default::default();

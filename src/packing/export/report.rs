@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use crate::packing::grading::ClassReading;
 use crate::packing::run::{RsaInput, RsaOutcome};
 
 /// Writes what the paper's text file holds: the input, the list of stones, the run time and their number.
@@ -24,6 +25,11 @@ pub fn text_report(input: &RsaInput, outcome: &RsaOutcome) -> String {
     for sieve in input.grading.sieves() {
         line(&format!("  passes {}", sieve.size.in_unit("mm")), sieve.passing.to_string());
     }
+    let reading = match input.class_reading {
+        ClassReading::En933 => "en-933-1",
+        ClassReading::OneSieveUp => "one-sieve-up",
+    };
+    line("class reading", reading.into());
     line("input height", format!("{:.4} m", outcome.input_height.si()));
     line("input compaction rate", percent(outcome.input_solid_share.si(), 2));
     line("strip height", input.strip.in_unit("cm"));
