@@ -1,0 +1,489 @@
+//! Lays a chart out: margins, ticks, curves, labels and legend.
+
+use super::axis::{Scale, Span};
+use super::chart::{Band, Chart, Legend, Line, Series, Stroke};
+use super::colour::Colour;
+use super::error::PlotError;
+use super::font::text_width;
+use super::path::{clip_polygon, clipped, dashed, sampled, thinned};
+use super::place::{Room, around, beside_level, beside_upright};
+use super::sheet::{Anchor, Rect, Sheet};
+use super::ticks::{Ticks, choose};
+
+/// Letter sizes, points per em.
+pub(super) const TITLE_SIZE: f64 = 17.0;
+pub(super) const CAPTION_SIZE: f64 = 14.0;
+pub(super) const TICK_SIZE: f64 = 13.0;
+pub(super) const LABEL_SIZE: f64 = 12.5;
+
+/// Height of a title with the space around it.
+pub(super) const TITLE_HEIGHT: f64 = 30.0;
+
+/// Space between the border of a figure and what it shows.
+pub(super) const BORDER: f64 = 12.0;
+
+/// Height of a label with the space around its letters.
+pub(super) const LABEL_HEIGHT: f64 = 17.0;
+
+const TICK_LENGTH: f64 = 5.0;
+const LEGEND_ROW: f64 = 20.0;
+const LEGEND_SAMPLE: f64 = 32.0;
+
+pub(super) const FRAME_COLOUR: Colour = Colour::grey(70);
+const GRID_COLOUR: Colour = Colour::grey(228);
+const ZERO_COLOUR: Colour = Colour::grey(190);
+const LINE_COLOUR: Colour = Colour::grey(90);
+const TEXT_COLOUR: Colour = Colour::grey(20);
+
+/// A frame with its two axes.
+struct Plane {
+    frame: Rect,
+    x: Span,
+    y: Span,
+    x_ticks: Ticks,
+    y_ticks: Ticks,
+}
+
+impl Plane {
+    /// Where a point falls on the sheet, in the frame or out of it.
+    fn place(&self, (x, y): (f64, f64)) -> Option<[f64; 2]> {
+        let (u, v) = (self.x.share(x)?, self.y.share(y)?);
+        Some([self.frame.x + u * self.frame.width, self.frame.bottom() - v * self.frame.height])
+    }
+}
+
+/// Width needed left of the frame of a chart of this height, points.
+pub(super) fn left_margin(chart: &Chart, area: &Rect) -> f64 {
+    let y = vertical_span(chart, &horizontal_span(chart));
+    left_of(chart, &choose(&y, vertical_count(area.height - 90.0)))
+}
+
+fn left_of(chart: &Chart, ticks: &Ticks) -> f64 {
+    let widest = ticks.major.iter().map(|(_, label)| text_width(label, TICK_SIZE)).fold(0.0, f64::max);
+    let caption = if chart.y.caption(&ticks.factor).is_empty() { 0.0 } else { CAPTION_SIZE + 12.0 };
+    BORDER + caption + widest + TICK_LENGTH + 5.0
+}
+
+fn vertical_count(height: f64) -> usize {
+    (height / 42.0).clamp(2.0, 10.0) as usize
+}
+
+fn horizontal_span(chart: &Chart) -> Span {
+    let lines = chart.series.iter().any(|s| !matches!(s.style, Stroke::Points | Stroke::LineAndPoints));
+    let margin = if lines || (chart.series.is_empty() && !chart.bands.is_empty()) { 0.0 } else { 0.04 };
+    let upright = chart.lines.iter().filter(|line| line.line == Line::Vertical).map(|line| line.at);
+    let points =
+        chart.series.iter().flat_map(|s| &s.points).filter(|p| p.1.is_finite() && p.0.is_finite()).map(|p| p.0);
+    let bands = chart.bands.iter().flat_map(|band| band.x.iter().copied());
+    let values = points.chain(bands).chain(chart.markers.iter().map(|m| m.x)).chain(upright);
+    Span::of(&chart.x, values.filter(|v| v.is_finite()), margin)
+}
+
+fn vertical_span(chart: &Chart, x: &Span) -> Span {
+    let seen = |at: f64| x.share(at).is_some_and(|share| (-1e-9..=1.0 + 1e-9).contains(&share));
+    let level = chart.lines.iter().filter(|line| line.line == Line::Horizontal).map(|line| line.at);
+    let points = chart.series.iter().flat_map(|s| &s.points).filter(|p| seen(p.0)).map(|p| p.1);
+    let bands = chart.bands.iter().flat_map(|band| {
+        let rows = band.x.iter().zip(band.lower.iter().zip(&band.upper));
+        rows.filter(|(at, _)| seen(**at)).flat_map(|(_, (low, high))| [*low, *high])
+    });
+    let markers = chart.markers.iter().filter(|m| seen(m.x)).map(|m| m.y);
+    Span::of(&chart.y, points.chain(bands).chain(markers).chain(level).filter(|v| v.is_finite()), 0.06)
+}
+
+/// Chooses as many horizontal ticks as fit beside one another.
+pub(super) fn fitting_ticks(span: &Span, width: f64) -> Ticks {
+    let mut most = (width / 55.0).clamp(2.0, 14.0) as usize;
+    loop {
+        let ticks = choose(span, most);
+        let fits = ticks.major.windows(2).all(|pair| {
+            let needed = (text_width(&pair[0].1, TICK_SIZE) + text_width(&pair[1].1, TICK_SIZE)) / 2.0 + 10.0;
+            (pair[1].0 - pair[0].0) * width >= needed
+        });
+        if fits || most <= 2 {
+            return ticks;
+        }
+        most -= 1;
+    }
+}
+
+fn plane(chart: &Chart, area: &Rect, top: f64, least_left: f64) -> Plane {
+    let x = horizontal_span(chart);
+    let y = vertical_span(chart, &x);
+    let bottom =
+        BORDER + TICK_LENGTH + TICK_SIZE + 5.0 + if chart.x.label.is_empty() { 0.0 } else { CAPTION_SIZE + 8.0 };
+    let height = (area.height - top - bottom).max(10.0);
+    let y_ticks = choose(&y, vertical_count(height));
+    let left = left_of(chart, &y_ticks).max(least_left).min(area.width * 0.45);
+    let mut right = BORDER + 8.0;
+    let mut x_ticks = Ticks::default();
+    for _ in 0..2 {
+        let width = (area.width - left - right).max(10.0);
+        x_ticks = fitting_ticks(&x, width);
+        let overhang = |(share, label): &(f64, String)| (share - 1.0) * width + text_width(label, TICK_SIZE) / 2.0;
+        let needed = x_ticks.major.last().map_or(0.0, overhang) + BORDER / 2.0;
+        right = right.max(needed.min(area.width * 0.3));
+    }
+    let width = (area.width - left - right).max(10.0);
+    Plane { frame: Rect::new(area.x + left, area.y + top, width, height), x, y, x_ticks, y_ticks }
+}
+
+/// Lays a chart out in an area of a sheet; the frame begins at least `least_left` from the left edge of the area.
+pub(super) fn lay_out_chart(sheet: &mut Sheet, chart: &Chart, area: Rect, least_left: f64) -> Result<(), PlotError> {
+    chart.check()?;
+    let top = if chart.title.is_empty() { BORDER } else { BORDER + TITLE_HEIGHT };
+    let entries = legend_entries(chart);
+    let mut plan = plane(chart, &area, top, least_left);
+    let mut room = Room { ink: ink(chart, &plan), ..Room::default() };
+    let mut legend = None;
+    if chart.legend != Legend::None && !entries.is_empty() {
+        if chart.legend == Legend::Auto {
+            legend = legend_inside(&plan.frame, &entries, &mut room);
+        }
+        if legend.is_none() {
+            let rows = legend_rows(&entries, plan.frame.width);
+            plan = plane(chart, &area, top + rows.len() as f64 * LEGEND_ROW + 6.0, least_left);
+            room = Room { ink: ink(chart, &plan), ..Room::default() };
+            for (number, row) in rows.iter().enumerate() {
+                let y = area.y + top + number as f64 * LEGEND_ROW;
+                let mut x = plan.frame.x;
+                for entry in row {
+                    draw_entry(sheet, chart, entry, [x, y + LEGEND_ROW / 2.0]);
+                    x += entry.width();
+                }
+            }
+        }
+    }
+    if !chart.title.is_empty() {
+        let middle = plan.frame.x + plan.frame.width / 2.0;
+        sheet.text([middle, area.y + BORDER + TITLE_SIZE], &chart.title, TITLE_SIZE, Anchor::Middle);
+    }
+    draw_grid(sheet, &plan);
+    for band in &chart.bands {
+        draw_band(sheet, &plan, band);
+    }
+    draw_reference_lines(sheet, chart, &plan);
+    for series in &chart.series {
+        draw_series(sheet, &plan, series);
+    }
+    draw_axes(sheet, chart, &plan);
+    if let Some(place) = legend {
+        sheet.fill(place, Colour::WHITE.with_alpha(0.85));
+        sheet.frame(place, Colour::grey(200), 0.75);
+        for (number, entry) in entries.iter().enumerate() {
+            let y = place.y + 5.0 + (number as f64 + 0.5) * LEGEND_ROW;
+            draw_entry(sheet, chart, entry, [place.x + 8.0, y]);
+        }
+    }
+    draw_labels(sheet, chart, &plan, &mut room);
+    Ok(())
+}
+
+fn draw_grid(sheet: &mut Sheet, plan: &Plane) {
+    let frame = plan.frame;
+    for (share, _) in &plan.x_ticks.major {
+        let x = frame.x + share * frame.width;
+        sheet.line(vec![[x, frame.y], [x, frame.bottom()]], GRID_COLOUR, 0.75);
+    }
+    for (share, _) in &plan.y_ticks.major {
+        let y = frame.bottom() - share * frame.height;
+        sheet.line(vec![[frame.x, y], [frame.right(), y]], GRID_COLOUR, 0.75);
+    }
+    if plan.y.scale == Scale::Linear && plan.y.low < 0.0 && plan.y.high > 0.0 {
+        let y = frame.bottom() - plan.y.share(0.0).unwrap_or(0.0) * frame.height;
+        sheet.line(vec![[frame.x, y], [frame.right(), y]], ZERO_COLOUR, 0.75);
+    }
+}
+
+fn draw_axes(sheet: &mut Sheet, chart: &Chart, plan: &Plane) {
+    let frame = plan.frame;
+    draw_ticks(sheet, &frame, &plan.x_ticks, &plan.y_ticks);
+    sheet.frame(frame, FRAME_COLOUR, 1.0);
+    let below = frame.bottom() + TICK_LENGTH + TICK_SIZE + 5.0 + CAPTION_SIZE + 4.0;
+    let caption = chart.x.caption(&plan.x_ticks.factor);
+    sheet.text([frame.x + frame.width / 2.0, below], &caption, CAPTION_SIZE, Anchor::Middle);
+    let widest = plan.y_ticks.major.iter().map(|(_, label)| text_width(label, TICK_SIZE)).fold(0.0, f64::max);
+    let x = frame.x - TICK_LENGTH - 5.0 - widest - 8.0;
+    sheet.text_upwards([x, frame.y + frame.height / 2.0], &chart.y.caption(&plan.y_ticks.factor), CAPTION_SIZE);
+}
+
+/// Ticks and their labels below and left of a frame.
+pub(super) fn draw_ticks(sheet: &mut Sheet, frame: &Rect, x_ticks: &Ticks, y_ticks: &Ticks) {
+    for (share, label) in &x_ticks.major {
+        let x = frame.x + share * frame.width;
+        sheet.line(vec![[x, frame.bottom()], [x, frame.bottom() + TICK_LENGTH]], FRAME_COLOUR, 1.0);
+        sheet.text([x, frame.bottom() + TICK_LENGTH + TICK_SIZE + 1.0], label, TICK_SIZE, Anchor::Middle);
+    }
+    for share in &x_ticks.minor {
+        let x = frame.x + share * frame.width;
+        sheet.line(vec![[x, frame.bottom()], [x, frame.bottom() + 0.6 * TICK_LENGTH]], FRAME_COLOUR, 0.75);
+    }
+    for (share, label) in &y_ticks.major {
+        let y = frame.bottom() - share * frame.height;
+        sheet.line(vec![[frame.x - TICK_LENGTH, y], [frame.x, y]], FRAME_COLOUR, 1.0);
+        sheet.text([frame.x - TICK_LENGTH - 4.0, y + 0.36 * TICK_SIZE], label, TICK_SIZE, Anchor::End);
+    }
+    for share in &y_ticks.minor {
+        let y = frame.bottom() - share * frame.height;
+        sheet.line(vec![[frame.x - 0.6 * TICK_LENGTH, y], [frame.x, y]], FRAME_COLOUR, 0.75);
+    }
+}
+
+fn pattern(style: Stroke) -> &'static [f64] {
+    match style {
+        Stroke::Solid | Stroke::Points | Stroke::LineAndPoints => &[],
+        Stroke::Dashed => &[7.0, 4.0],
+        Stroke::Dotted => &[1.8, 3.2],
+        Stroke::DashDotted => &[9.0, 3.0, 1.8, 3.0],
+    }
+}
+
+fn has_line(style: Stroke) -> bool {
+    style != Stroke::Points
+}
+
+fn has_points(style: Stroke) -> bool {
+    matches!(style, Stroke::Points | Stroke::LineAndPoints)
+}
+
+fn line_width(series: &Series) -> f64 {
+    if series.width.is_finite() { series.width.clamp(0.5, 10.0) } else { 1.6 }
+}
+
+fn pieces(plan: &Plane, points: impl Iterator<Item = (f64, f64)>) -> Vec<Vec<[f64; 2]>> {
+    clipped(points.map(|p| plan.place(p)), &plan.frame).iter().map(|piece| thinned(piece)).collect()
+}
+
+/// The points of a series that have a place in the frame.
+fn spots(plan: &Plane, series: &Series) -> Vec<[f64; 2]> {
+    let frame = plan.frame.shrunk(-0.5);
+    let mut spots: Vec<_> =
+        series.points.iter().filter_map(|&p| plan.place(p)).filter(|p| frame.contains(*p)).collect();
+    spots.dedup_by(|a, b| (a[0] - b[0]).abs() < 0.25 && (a[1] - b[1]).abs() < 0.25);
+    spots
+}
+
+fn draw_series(sheet: &mut Sheet, plan: &Plane, series: &Series) {
+    let colour = Colour::of_palette(series.colour);
+    if has_line(series.style) {
+        for piece in pieces(plan, series.points.iter().copied()) {
+            for dash in dashed(&piece, pattern(series.style)) {
+                sheet.line(dash, colour, line_width(series));
+            }
+        }
+    }
+    // A line through one point alone would show nothing.
+    let lonely = series.points.iter().filter(|&&p| plan.place(p).is_some()).count() == 1;
+    if has_points(series.style) || lonely {
+        for spot in spots(plan, series) {
+            draw_symbol(sheet, spot, series.colour, 4.0);
+        }
+    }
+}
+
+/// Draws the symbol that belongs to a colour of the palette.
+fn draw_symbol(sheet: &mut Sheet, [x, y]: [f64; 2], index: usize, r: f64) {
+    let colour = Colour::of_palette(index);
+    match index % 5 {
+        0 => sheet.disc([x, y], r, colour),
+        1 => sheet.fill(Rect::new(x - 0.88 * r, y - 0.88 * r, 1.76 * r, 1.76 * r), colour),
+        2 => sheet.area(vec![[x, y - 1.25 * r], [x + 1.1 * r, y + 0.75 * r], [x - 1.1 * r, y + 0.75 * r]], colour),
+        3 => sheet.area(vec![[x, y - 1.3 * r], [x + 1.3 * r, y], [x, y + 1.3 * r], [x - 1.3 * r, y]], colour),
+        _ => sheet.area(vec![[x, y + 1.25 * r], [x + 1.1 * r, y - 0.75 * r], [x - 1.1 * r, y - 0.75 * r]], colour),
+    }
+}
+
+/// The outlines of a band: one polygon per run of rows without gaps.
+fn band_outlines(plan: &Plane, band: &Band) -> Vec<Vec<[f64; 2]>> {
+    let rows: Vec<_> = band
+        .x
+        .iter()
+        .zip(band.lower.iter().zip(&band.upper))
+        .map(|(&x, (&low, &high))| Some((plan.place((x, low))?, plan.place((x, high))?)))
+        .collect();
+    rows.split(Option::is_none)
+        .map(|run| {
+            let (lower, upper): (Vec<_>, Vec<_>) = run.iter().flatten().copied().unzip();
+            let outline: Vec<_> = thinned(&upper).into_iter().chain(thinned(&lower).into_iter().rev()).collect();
+            clip_polygon(&outline, &plan.frame)
+        })
+        .filter(|outline| outline.len() > 2)
+        .collect()
+}
+
+fn draw_band(sheet: &mut Sheet, plan: &Plane, band: &Band) {
+    for outline in band_outlines(plan, band) {
+        sheet.area(outline, Colour::of_palette(band.colour).with_alpha(0.25));
+    }
+}
+
+fn reference_position(plan: &Plane, at: f64, line: Line) -> Option<f64> {
+    let frame = plan.frame;
+    let share = match line {
+        Line::Vertical => plan.x.share(at)?,
+        Line::Horizontal => plan.y.share(at)?,
+    };
+    (-1e-9..=1.0 + 1e-9).contains(&share).then(|| match line {
+        Line::Vertical => frame.x + share * frame.width,
+        Line::Horizontal => frame.bottom() - share * frame.height,
+    })
+}
+
+fn draw_reference_lines(sheet: &mut Sheet, chart: &Chart, plan: &Plane) {
+    let frame = plan.frame;
+    for line in &chart.lines {
+        let Some(at) = reference_position(plan, line.at, line.line) else { continue };
+        let ends = match line.line {
+            Line::Vertical => [[at, frame.y], [at, frame.bottom()]],
+            Line::Horizontal => [[frame.x, at], [frame.right(), at]],
+        };
+        for dash in dashed(&ends, &[4.0, 3.0]) {
+            sheet.line(dash, LINE_COLOUR, 1.0);
+        }
+    }
+}
+
+fn draw_labels(sheet: &mut Sheet, chart: &Chart, plan: &Plane, room: &mut Room) {
+    let frame = plan.frame;
+    for line in chart.lines.iter().filter(|line| !line.label.is_empty()) {
+        let Some(at) = reference_position(plan, line.at, line.line) else { continue };
+        let width = text_width(&line.label, LABEL_SIZE) + 6.0;
+        let places = match line.line {
+            Line::Vertical => beside_upright(at, &frame, width, LABEL_HEIGHT),
+            Line::Horizontal => beside_level(at, &frame, width, LABEL_HEIGHT),
+        };
+        if let Some(place) = room.claim(&frame, places) {
+            draw_label(sheet, &place, &line.label);
+        }
+    }
+    let spots: Vec<_> = chart
+        .markers
+        .iter()
+        .filter_map(|marker| Some((marker, plan.place((marker.x, marker.y))?)))
+        .filter(|(_, at)| frame.contains(*at))
+        .collect();
+    room.taken.extend(spots.iter().map(|(_, [x, y])| Rect::new(x - 5.0, y - 5.0, 10.0, 10.0)));
+    for (marker, at) in &spots {
+        sheet.disc(*at, 5.0, Colour::WHITE);
+        draw_symbol(sheet, *at, marker.colour, 4.0);
+        if marker.label.is_empty() {
+            continue;
+        }
+        let width = text_width(&marker.label, LABEL_SIZE) + 6.0;
+        if let Some(place) = room.claim(&frame, around(*at, width, LABEL_HEIGHT)) {
+            draw_leader(sheet, *at, &place);
+            draw_label(sheet, &place, &marker.label);
+        }
+    }
+}
+
+/// Draws a thin line from a point to its label when the label is not close by.
+pub(super) fn draw_leader(sheet: &mut Sheet, at: [f64; 2], place: &Rect) {
+    let near = [at[0].clamp(place.x, place.right()), at[1].clamp(place.y, place.bottom())];
+    if (near[0] - at[0]).hypot(near[1] - at[1]) > 14.0 {
+        sheet.line(vec![at, near], LINE_COLOUR, 0.75);
+    }
+}
+
+/// Writes a label in its place, on a pale ground so that it can be read over a curve.
+pub(super) fn draw_label(sheet: &mut Sheet, place: &Rect, text: &str) {
+    sheet.fill(*place, Colour::WHITE.with_alpha(0.8));
+    sheet.text_in([place.x + 3.0, place.y + 12.8], text, LABEL_SIZE, Anchor::Start, TEXT_COLOUR);
+}
+
+/// What curves, bands and symbols cover, as points.
+fn ink(chart: &Chart, plan: &Plane) -> Vec<[f64; 2]> {
+    let mut ink = Vec::new();
+    for series in &chart.series {
+        if has_line(series.style) {
+            ink.extend(pieces(plan, series.points.iter().copied()).iter().flat_map(|piece| sampled(piece, 4.0)));
+        }
+        if has_points(series.style) {
+            ink.extend(spots(plan, series));
+        }
+    }
+    ink.extend(chart.bands.iter().flat_map(|b| band_outlines(plan, b)).flat_map(|outline| sampled(&outline, 8.0)));
+    ink.extend(chart.markers.iter().filter_map(|m| plan.place((m.x, m.y))));
+    for line in &chart.lines {
+        let Some(at) = reference_position(plan, line.at, line.line) else { continue };
+        let frame = plan.frame;
+        ink.extend(match line.line {
+            Line::Vertical => sampled(&[[at, frame.y], [at, frame.bottom()]], 12.0),
+            Line::Horizontal => sampled(&[[frame.x, at], [frame.right(), at]], 12.0),
+        });
+    }
+    ink
+}
+
+enum Sample {
+    Series(usize),
+    Band(usize),
+}
+
+struct Entry<'a> {
+    sample: Sample,
+    name: &'a str,
+}
+
+impl Entry<'_> {
+    fn width(&self) -> f64 {
+        LEGEND_SAMPLE + 8.0 + text_width(self.name, TICK_SIZE) + 18.0
+    }
+}
+
+fn legend_entries(chart: &Chart) -> Vec<Entry<'_>> {
+    let series = chart.series.iter().enumerate().map(|(i, s)| Entry { sample: Sample::Series(i), name: &s.name });
+    let bands = chart.bands.iter().enumerate().map(|(i, b)| Entry { sample: Sample::Band(i), name: &b.name });
+    series.chain(bands).filter(|entry| !entry.name.is_empty()).collect()
+}
+
+/// The corner where a legend hides nothing, if there is one.
+fn legend_inside(frame: &Rect, entries: &[Entry<'_>], room: &mut Room) -> Option<Rect> {
+    let width = entries.iter().map(Entry::width).fold(0.0, f64::max) - 2.0;
+    let height = entries.len() as f64 * LEGEND_ROW + 10.0;
+    let (left, right) = (frame.x + 8.0, frame.right() - 8.0 - width);
+    let (top, bottom) = (frame.y + 8.0, frame.bottom() - 8.0 - height);
+    let places = [[right, top], [left, top], [right, bottom], [left, bottom]];
+    let places = places.map(|[x, y]| Rect::new(x, y, width, height));
+    let tolerable = |place: &Rect| room.hidden(&place.shrunk(-3.0)) == 0;
+    let free: Vec<_> = places.into_iter().filter(tolerable).collect();
+    if width > 0.6 * frame.width || height > 0.7 * frame.height { None } else { room.claim(frame, free) }
+}
+
+/// Entries of a legend above the chart, row by row.
+fn legend_rows<'e, 'a>(entries: &'e [Entry<'a>], width: f64) -> Vec<Vec<&'e Entry<'a>>> {
+    let mut rows: Vec<Vec<&Entry<'_>>> = Vec::new();
+    let mut used = f64::INFINITY;
+    for entry in entries {
+        if used + entry.width() > width {
+            rows.push(Vec::new());
+            used = 0.0;
+        }
+        used += entry.width();
+        if let Some(row) = rows.last_mut() {
+            row.push(entry);
+        }
+    }
+    rows
+}
+
+fn draw_entry(sheet: &mut Sheet, chart: &Chart, entry: &Entry<'_>, [x, y]: [f64; 2]) {
+    match entry.sample {
+        Sample::Series(index) => {
+            let series = &chart.series[index];
+            if has_line(series.style) {
+                for dash in dashed(&[[x, y], [x + LEGEND_SAMPLE, y]], pattern(series.style)) {
+                    sheet.line(dash, Colour::of_palette(series.colour), line_width(series));
+                }
+            }
+            if has_points(series.style) {
+                draw_symbol(sheet, [x + LEGEND_SAMPLE / 2.0, y], series.colour, 4.0);
+            }
+        }
+        Sample::Band(index) => {
+            let colour = Colour::of_palette(chart.bands[index].colour).with_alpha(0.25);
+            sheet.fill(Rect::new(x, y - 6.0, LEGEND_SAMPLE, 12.0), colour);
+        }
+    }
+    sheet.text([x + LEGEND_SAMPLE + 8.0, y + 0.36 * TICK_SIZE], entry.name, TICK_SIZE, Anchor::Start);
+}
