@@ -104,11 +104,11 @@ mod tests {
         assert_eq!(viridis(f64::NAN).rgb, [68, 1, 84]);
     }
 
-    /// Entry 128 of the published table of 256 is (33, 145, 140), entry 40 is (65, 68, 135) and entry 200 is
-    /// (94, 201, 98). Two levels of tolerance: between its stops this table is interpolated.
+    /// Entry 128 of the published table of 256 is (33, 145, 140), entry 40 is (69, 55, 129) and entry 200 is
+    /// (112, 207, 87). Two levels of tolerance: between its stops this table is interpolated.
     #[test]
     fn viridis_is_the_published_one() {
-        for (entry, rgb) in [(128.0, [33, 145, 140]), (40.0, [65, 68, 135]), (200.0, [94, 201, 98])] {
+        for (entry, rgb) in [(128.0, [33, 145, 140]), (40.0, [69, 55, 129]), (200.0, [112, 207, 87])] {
             let ours = viridis(entry / 255.0).rgb;
             for c in 0..3 {
                 assert!(ours[c].abs_diff(rgb[c]) <= 2, "entry {entry}: {ours:?}, published {rgb:?}");

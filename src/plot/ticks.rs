@@ -36,6 +36,23 @@ fn round_step(span: f64, most: usize) -> (f64, i32) {
     (1.0, exponent)
 }
 
+/// The step for an axis: the finest that fits, unless a coarser one that still gives four parts meets both ends.
+fn step_for(low: f64, high: f64, most: usize) -> (f64, i32) {
+    let finest = round_step(high - low, most);
+    let meets = |end: f64, step: f64| (end / step - (end / step).round()).abs() < 1e-9;
+    let next = |(digit, exponent): (f64, i32)| match digit {
+        1.0 => (2.0, exponent),
+        2.0 => (5.0, exponent),
+        _ => (1.0, exponent + 1),
+    };
+    std::iter::successors(Some(finest), |&step| Some(next(step)))
+        .map(|(digit, exponent)| ((digit, exponent), digit * ten_to(exponent)))
+        .take_while(|(_, step)| (high - low) / step >= 4.0 - 1e-9)
+        .take(4)
+        .find(|(_, step)| meets(low, *step) && meets(high, *step))
+        .map_or(finest, |found| found.0)
+}
+
 /// Multiples of the step from `low` to `high`, as multipliers.
 fn multipliers(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
     let slack = (high - low) * 1e-9;
@@ -45,7 +62,7 @@ fn multipliers(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
 }
 
 fn linear(low: f64, high: f64, most: usize) -> Ticks {
-    let (digit, exponent) = round_step(high - low, most);
+    let (digit, exponent) = step_for(low, high, most);
     let step = digit * ten_to(exponent);
     let largest = low.abs().max(high.abs());
     let magnitude = largest.log10().floor() as i32;
@@ -145,6 +162,7 @@ mod tests {
     #[test]
     fn ticks_are_round_and_zero_has_no_sign() {
         assert_eq!(labels(0.0, 25.0, 6), ["0", "5", "10", "15", "20", "25"]);
+        assert_eq!(labels(0.0, 25.0, 14), ["0", "5", "10", "15", "20", "25"]);
         assert_eq!(labels(-1.0, 1.0, 4), ["−1.0", "−0.5", "0.0", "0.5", "1.0"]);
         assert_eq!(labels(-0.3, 0.3, 6), ["−0.3", "−0.2", "−0.1", "0.0", "0.1", "0.2", "0.3"]);
         assert_eq!(number(-0.04, 1), "0.0");
