@@ -20,12 +20,15 @@ pub struct Axis {
     pub scale: Scale,
     /// From where to where; `None`, an empty range or one that is not finite take it from the data.
     pub range: Option<(f64, f64)>,
+    /// The labelled ticks, for example the sieves of a standard; empty to choose round numbers. Of labels that would
+    /// touch, the first is written.
+    pub ticks: Vec<f64>,
 }
 
 impl Axis {
     /// Makes a linear axis that spans its data.
     pub fn linear(label: &str, unit: &str) -> Self {
-        Self { label: label.into(), unit: unit.into(), scale: Scale::Linear, range: None }
+        Self { label: label.into(), unit: unit.into(), scale: Scale::Linear, range: None, ticks: Vec::new() }
     }
 
     /// Makes a logarithmic axis that spans its data.

@@ -4,11 +4,11 @@ use super::axis::{Scale, Span};
 use super::chart::{Band, Chart, Legend, Line, Series, Stroke};
 use super::colour::Colour;
 use super::error::PlotError;
-use super::font::text_width;
+use super::font::{shortened, text_width};
 use super::path::{clip_polygon, clipped, dashed, sampled, thinned};
 use super::place::{Room, around, beside_level, beside_upright};
 use super::sheet::{Anchor, Rect, Sheet};
-use super::ticks::{Ticks, choose};
+use super::ticks::{Ticks, choose, given};
 
 /// Letter sizes, points per em.
 pub(super) const TITLE_SIZE: f64 = 17.0;
@@ -55,7 +55,7 @@ impl Plane {
 /// Width needed left of the frame of a chart of this height, points.
 pub(super) fn left_margin(chart: &Chart, area: &Rect) -> f64 {
     let y = vertical_span(chart, &horizontal_span(chart));
-    left_of(chart, &choose(&y, vertical_count(area.height - 90.0)))
+    left_of(chart, &vertical_ticks(chart, &y, area.height - 90.0))
 }
 
 fn left_of(chart: &Chart, ticks: &Ticks) -> f64 {
@@ -64,8 +64,37 @@ fn left_of(chart: &Chart, ticks: &Ticks) -> f64 {
     BORDER + caption + widest + TICK_LENGTH + 5.0
 }
 
-fn vertical_count(height: f64) -> usize {
-    (height / 42.0).clamp(2.0, 10.0) as usize
+fn vertical_ticks(chart: &Chart, span: &Span, height: f64) -> Ticks {
+    if chart.y.ticks.is_empty() {
+        return choose(span, (height / 42.0).clamp(2.0, 10.0) as usize);
+    }
+    let mut ticks = given(span, &chart.y.ticks);
+    keep_apart(&mut ticks, |a, b| (b.0 - a.0) * height >= TICK_SIZE + 2.0);
+    ticks
+}
+
+fn horizontal_ticks(chart: &Chart, span: &Span, width: f64) -> Ticks {
+    if chart.x.ticks.is_empty() {
+        return fitting_ticks(span, width);
+    }
+    let mut ticks = given(span, &chart.x.ticks);
+    keep_apart(&mut ticks, |a, b| {
+        (b.0 - a.0) * width >= (text_width(&a.1, TICK_SIZE) + text_width(&b.1, TICK_SIZE)) / 2.0 + 6.0
+    });
+    ticks
+}
+
+/// Makes a tick whose label would touch the one before a tick without label.
+fn keep_apart(ticks: &mut Ticks, apart: impl Fn(&(f64, String), &(f64, String)) -> bool) {
+    let mut kept: Vec<(f64, String)> = Vec::with_capacity(ticks.major.len());
+    for tick in ticks.major.drain(..) {
+        if kept.last().is_none_or(|last| apart(last, &tick)) {
+            kept.push(tick);
+        } else {
+            ticks.minor.push(tick.0);
+        }
+    }
+    ticks.major = kept;
 }
 
 fn horizontal_span(chart: &Chart) -> Span {
@@ -113,13 +142,13 @@ fn plane(chart: &Chart, area: &Rect, top: f64, least_left: f64) -> Plane {
     let bottom =
         BORDER + TICK_LENGTH + TICK_SIZE + 5.0 + if chart.x.label.is_empty() { 0.0 } else { CAPTION_SIZE + 8.0 };
     let height = (area.height - top - bottom).max(10.0);
-    let y_ticks = choose(&y, vertical_count(height));
+    let y_ticks = vertical_ticks(chart, &y, height);
     let left = left_of(chart, &y_ticks).max(least_left).min(area.width * 0.45);
     let mut right = BORDER + 8.0;
     let mut x_ticks = Ticks::default();
     for _ in 0..2 {
         let width = (area.width - left - right).max(10.0);
-        x_ticks = fitting_ticks(&x, width);
+        x_ticks = horizontal_ticks(chart, &x, width);
         let overhang = |(share, label): &(f64, String)| (share - 1.0) * width + text_width(label, TICK_SIZE) / 2.0;
         let needed = x_ticks.major.last().map_or(0.0, overhang) + BORDER / 2.0;
         right = right.max(needed.min(area.width * 0.3));
@@ -132,8 +161,8 @@ fn plane(chart: &Chart, area: &Rect, top: f64, least_left: f64) -> Plane {
 pub(super) fn lay_out_chart(sheet: &mut Sheet, chart: &Chart, area: Rect, least_left: f64) -> Result<(), PlotError> {
     chart.check()?;
     let top = if chart.title.is_empty() { BORDER } else { BORDER + TITLE_HEIGHT };
-    let entries = legend_entries(chart);
     let mut plan = plane(chart, &area, top, least_left);
+    let entries = legend_entries(chart, plan.frame.width);
     let mut room = Room { ink: ink(chart, &plan), ..Room::default() };
     let mut legend = None;
     if chart.legend != Legend::None && !entries.is_empty() {
@@ -156,7 +185,8 @@ pub(super) fn lay_out_chart(sheet: &mut Sheet, chart: &Chart, area: Rect, least_
     }
     if !chart.title.is_empty() {
         let middle = plan.frame.x + plan.frame.width / 2.0;
-        sheet.text([middle, area.y + BORDER + TITLE_SIZE], &chart.title, TITLE_SIZE, Anchor::Middle);
+        let room = 2.0 * (middle - area.x).min(area.right() - middle) - BORDER;
+        sheet.title([middle, area.y + BORDER + TITLE_SIZE], &chart.title, TITLE_SIZE, room);
     }
     draw_grid(sheet, &plan);
     for band in &chart.bands {
@@ -201,10 +231,12 @@ fn draw_axes(sheet: &mut Sheet, chart: &Chart, plan: &Plane) {
     sheet.frame(frame, FRAME_COLOUR, 1.0);
     let below = frame.bottom() + TICK_LENGTH + TICK_SIZE + 5.0 + CAPTION_SIZE + 4.0;
     let caption = chart.x.caption(&plan.x_ticks.factor);
+    let caption = shortened(&caption, CAPTION_SIZE, frame.width + 30.0);
     sheet.text([frame.x + frame.width / 2.0, below], &caption, CAPTION_SIZE, Anchor::Middle);
     let widest = plan.y_ticks.major.iter().map(|(_, label)| text_width(label, TICK_SIZE)).fold(0.0, f64::max);
     let x = frame.x - TICK_LENGTH - 5.0 - widest - 8.0;
-    sheet.text_upwards([x, frame.y + frame.height / 2.0], &chart.y.caption(&plan.y_ticks.factor), CAPTION_SIZE);
+    let caption = shortened(&chart.y.caption(&plan.y_ticks.factor), CAPTION_SIZE, frame.height + 20.0);
+    sheet.text_upwards([x, frame.y + frame.height / 2.0], &caption, CAPTION_SIZE);
 }
 
 /// Ticks and their labels below and left of a frame.
@@ -420,25 +452,26 @@ enum Sample {
     Band(usize),
 }
 
-struct Entry<'a> {
+struct Entry {
     sample: Sample,
-    name: &'a str,
+    name: String,
 }
 
-impl Entry<'_> {
+impl Entry {
     fn width(&self) -> f64 {
-        LEGEND_SAMPLE + 8.0 + text_width(self.name, TICK_SIZE) + 18.0
+        LEGEND_SAMPLE + 8.0 + text_width(&self.name, TICK_SIZE) + 18.0
     }
 }
 
-fn legend_entries(chart: &Chart) -> Vec<Entry<'_>> {
-    let series = chart.series.iter().enumerate().map(|(i, s)| Entry { sample: Sample::Series(i), name: &s.name });
-    let bands = chart.bands.iter().enumerate().map(|(i, b)| Entry { sample: Sample::Band(i), name: &b.name });
+fn legend_entries(chart: &Chart, width: f64) -> Vec<Entry> {
+    let named = |sample, name: &str| Entry { sample, name: shortened(name, TICK_SIZE, width - LEGEND_SAMPLE - 26.0) };
+    let series = chart.series.iter().enumerate().map(|(i, s)| named(Sample::Series(i), &s.name));
+    let bands = chart.bands.iter().enumerate().map(|(i, b)| named(Sample::Band(i), &b.name));
     series.chain(bands).filter(|entry| !entry.name.is_empty()).collect()
 }
 
 /// The corner where a legend hides nothing, if there is one.
-fn legend_inside(frame: &Rect, entries: &[Entry<'_>], room: &mut Room) -> Option<Rect> {
+fn legend_inside(frame: &Rect, entries: &[Entry], room: &mut Room) -> Option<Rect> {
     let width = entries.iter().map(Entry::width).fold(0.0, f64::max) - 2.0;
     let height = entries.len() as f64 * LEGEND_ROW + 10.0;
     let (left, right) = (frame.x + 8.0, frame.right() - 8.0 - width);
@@ -451,8 +484,8 @@ fn legend_inside(frame: &Rect, entries: &[Entry<'_>], room: &mut Room) -> Option
 }
 
 /// Entries of a legend above the chart, row by row.
-fn legend_rows<'e, 'a>(entries: &'e [Entry<'a>], width: f64) -> Vec<Vec<&'e Entry<'a>>> {
-    let mut rows: Vec<Vec<&Entry<'_>>> = Vec::new();
+fn legend_rows(entries: &[Entry], width: f64) -> Vec<Vec<&Entry>> {
+    let mut rows: Vec<Vec<&Entry>> = Vec::new();
     let mut used = f64::INFINITY;
     for entry in entries {
         if used + entry.width() > width {
@@ -467,7 +500,7 @@ fn legend_rows<'e, 'a>(entries: &'e [Entry<'a>], width: f64) -> Vec<Vec<&'e Entr
     rows
 }
 
-fn draw_entry(sheet: &mut Sheet, chart: &Chart, entry: &Entry<'_>, [x, y]: [f64; 2]) {
+fn draw_entry(sheet: &mut Sheet, chart: &Chart, entry: &Entry, [x, y]: [f64; 2]) {
     match entry.sample {
         Sample::Series(index) => {
             let series = &chart.series[index];
@@ -485,5 +518,5 @@ fn draw_entry(sheet: &mut Sheet, chart: &Chart, entry: &Entry<'_>, [x, y]: [f64;
             sheet.fill(Rect::new(x, y - 6.0, LEGEND_SAMPLE, 12.0), colour);
         }
     }
-    sheet.text([x + LEGEND_SAMPLE + 8.0, y + 0.36 * TICK_SIZE], entry.name, TICK_SIZE, Anchor::Start);
+    sheet.text([x + LEGEND_SAMPLE + 8.0, y + 0.36 * TICK_SIZE], &entry.name, TICK_SIZE, Anchor::Start);
 }

@@ -32,6 +32,21 @@ pub(super) fn text_width(text: &str, size: f64) -> f64 {
     FONT.as_ref().map_or(0.0, |font| glyphs(font, text, size).1)
 }
 
+/// The text, or as much of its beginning as fits into a width, with an ellipsis.
+pub(super) fn shortened(text: &str, size: f64, width: f64) -> String {
+    if text_width(text, size) <= width {
+        return text.to_owned();
+    }
+    let mut kept: Vec<char> = text.chars().take((width / (0.2 * size)).max(0.0) as usize).collect();
+    while kept.pop().is_some() {
+        let short: String = kept.iter().chain(['…'].iter()).collect();
+        if text_width(&short, size) <= width {
+            return short;
+        }
+    }
+    String::new()
+}
+
 /// Height of a capital letter of DejaVu Sans, share of the em (1493 / 2048).
 pub(super) const CAP_HEIGHT: f64 = 0.729;
 
@@ -147,6 +162,14 @@ mod tests {
         let expected = 100.0 * f64::from(1303 + 651 + 1303) / 2048.0;
         assert!((text_width("0.0", 100.0) - expected).abs() < 1e-3, "{} not {expected}", text_width("0.0", 100.0));
         assert_eq!(text_width("", 100.0), 0.0);
+    }
+
+    #[test]
+    fn a_text_is_shortened_to_its_room() {
+        assert_eq!(shortened("time", 13.0, 100.0), "time");
+        let short = shortened(&"ballast ".repeat(500), 13.0, 100.0);
+        assert!(short.starts_with("ballast") && short.ends_with('…') && text_width(&short, 13.0) <= 100.0, "{short}");
+        assert_eq!(shortened("time", 13.0, 1.0), "");
     }
 
     #[test]

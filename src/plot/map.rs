@@ -44,7 +44,7 @@ pub struct MapFigure {
     /// Title; empty for none.
     pub title: String,
     /// Relative permittivity of every cell, at `[i * ny + j]` with `i` along x and `j` along y, upwards. Infinity is a
-    /// perfect conductor (black); NaN is no value (hatched grey in the key, light grey on the map).
+    /// perfect conductor (black); NaN is no value (light grey).
     pub values: Vec<f32>,
     /// Number of cells along x.
     pub nx: usize,

@@ -6,7 +6,7 @@ use super::chart_layout::{
     draw_leader, draw_ticks, fitting_ticks,
 };
 use super::colour::{Colour, viridis};
-use super::font::text_width;
+use super::font::{shortened, text_width};
 use super::image::Image;
 use super::map::{MapFigure, SymbolKind};
 use super::path::dashed;
@@ -23,6 +23,9 @@ const MOST_PIXELS: usize = 1600;
 
 const BAR_WIDTH: f64 = 16.0;
 const LEFT: f64 = 70.0;
+
+/// Room for the name of a layer, points.
+const LONGEST_NAME: f64 = 260.0;
 
 const CONDUCTOR: Colour = Colour::BLACK;
 const UNKNOWN: Colour = Colour::grey(205);
@@ -81,7 +84,8 @@ pub(super) fn lay_out_map(map: &MapFigure) -> Sheet {
     let scale = (LARGEST[0] / width).min(LARGEST[1] / height);
     let top = if map.title.is_empty() { BORDER + 6.0 } else { BORDER + TITLE_HEIGHT };
     let (drawn_width, drawn_height) = ((width * scale).max(SMALLEST), (height * scale).max(SMALLEST));
-    let names = map.layers.iter().map(|layer| text_width(&layer.label, LABEL_SIZE)).fold(0.0, f64::max).min(260.0);
+    let names =
+        map.layers.iter().map(|layer| text_width(&layer.label, LABEL_SIZE)).fold(0.0, f64::max).min(LONGEST_NAME);
     let names = if names > 0.0 { names + 22.0 } else { 0.0 };
     let key_height = key.rows().len() as f64 * 22.0;
     let bar_height = (drawn_height - key_height).max(110.0);
@@ -93,7 +97,7 @@ pub(super) fn lay_out_map(map: &MapFigure) -> Sheet {
     let middle = frame.x + frame.width / 2.0;
     let half = text_width(&map.title, TITLE_SIZE) / 2.0 + BORDER;
     let middle = if 2.0 * half < sheet.width { middle.clamp(half, sheet.width - half) } else { sheet.width / 2.0 };
-    sheet.text([middle, BORDER + TITLE_SIZE], &map.title, TITLE_SIZE, Anchor::Middle);
+    sheet.title([middle, BORDER + TITLE_SIZE], &map.title, TITLE_SIZE, sheet.width - 2.0 * BORDER);
     sheet.picture(frame, picture(map, &key.span));
     draw_axes(&mut sheet, map, &frame);
     draw_absorbing(&mut sheet, map, &frame);
@@ -105,9 +109,15 @@ pub(super) fn lay_out_map(map: &MapFigure) -> Sheet {
     sheet
 }
 
+/// The colour at a share of the colour bar: viridis turned round, so that permittivity darkens from air (white) to a
+/// perfect conductor (black) in grey print too.
+fn shade(share: f64) -> Colour {
+    viridis(1.0 - share)
+}
+
 /// Colours of the cells; where several cells share a pixel, the mean of their colours.
 fn picture(map: &MapFigure, span: &Span) -> Image {
-    let table: Vec<[u8; 3]> = (0..256).map(|i| viridis(f64::from(i) / 255.0).rgb).collect();
+    let table: Vec<[u8; 3]> = (0..256).map(|i| shade(f64::from(i) / 255.0).rgb).collect();
     let (low, factor) = (span.low as f32, (255.0 / (span.high - span.low)) as f32);
     let colour = |value: f32| {
         if value.is_nan() {
@@ -203,7 +213,8 @@ fn draw_layers(sheet: &mut Sheet, map: &MapFigure, frame: &Rect) {
         let middle = (top + bottom) / 2.0;
         let y = middle.max(free);
         sheet.line(vec![[x + 4.0, middle], [x + 9.0, y]], OUTLINE, 1.0);
-        sheet.text([x + 12.0, y + 0.36 * LABEL_SIZE], label, LABEL_SIZE, Anchor::Start);
+        let label = shortened(label, LABEL_SIZE, LONGEST_NAME);
+        sheet.text([x + 12.0, y + 0.36 * LABEL_SIZE], &label, LABEL_SIZE, Anchor::Start);
         free = y + LABEL_HEIGHT;
     }
 }
@@ -212,7 +223,7 @@ fn draw_bar(sheet: &mut Sheet, key: &Key, bar: &Rect) {
     let mut y = bar.y;
     if key.has_colour {
         let rows = 256;
-        let pixels = (0..rows).flat_map(|row| viridis(1.0 - row as f64 / (rows - 1) as f64).rgb).collect();
+        let pixels = (0..rows).flat_map(|row| shade(1.0 - row as f64 / (rows - 1) as f64).rgb).collect();
         sheet.picture(*bar, Image { width: 1, height: rows, pixels });
         sheet.frame(*bar, FRAME_COLOUR, 1.0);
         let ticks = choose(&key.span, (bar.height / 50.0).clamp(2.0, 8.0) as usize);

@@ -107,7 +107,7 @@ impl Figure for PackingFigure {
         };
         let (frames, [width, height]) = self.frames(states.len());
         let mut sheet = Sheet::new(&self.title, width, height);
-        sheet.text([width / 2.0, BORDER + TITLE_SIZE], &self.title, TITLE_SIZE, Anchor::Middle);
+        sheet.title([width / 2.0, BORDER + TITLE_SIZE], &self.title, TITLE_SIZE, width - 2.0 * BORDER);
         for (frame, (name, discs)) in frames.iter().zip(states) {
             let stones = match discs.len() {
                 1 => "1 stone".to_owned(),

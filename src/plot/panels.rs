@@ -4,7 +4,7 @@ use super::chart::Chart;
 use super::chart_layout::{BORDER, TITLE_HEIGHT, TITLE_SIZE, lay_out_chart, left_margin};
 use super::error::PlotError;
 use super::figure::Figure;
-use super::sheet::{Anchor, Rect, Sheet};
+use super::sheet::{Rect, Sheet};
 
 /// Charts in a grid, row by row, under one title; the frames of a column begin at the same abscissa.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,7 +38,7 @@ impl Figure for Panels {
         let [width, height] = self.size;
         let mut sheet = Sheet::new(&self.title, width, height);
         let top = if self.title.is_empty() { 0.0 } else { TITLE_HEIGHT };
-        sheet.text([width / 2.0, BORDER + TITLE_SIZE], &self.title, TITLE_SIZE + 1.0, Anchor::Middle);
+        sheet.title([width / 2.0, BORDER + TITLE_SIZE], &self.title, TITLE_SIZE + 1.0, width - 2.0 * BORDER);
         let columns = self.columns.max(1);
         let rows = self.charts.len().div_ceil(columns);
         let weights: f64 = (0..rows).map(|row| self.row_weight(row)).sum();

@@ -1,7 +1,7 @@
 //! The sheet: a list of marks in points, laid out once and drawn by both backends.
 
 use super::colour::Colour;
-use super::font::{CAP_HEIGHT, DESCENT, text_width};
+use super::font::{CAP_HEIGHT, DESCENT, shortened, text_width};
 use super::image::Image;
 
 /// Where the given point lies along a text.
@@ -175,6 +175,12 @@ impl Sheet {
     /// Writes a line of text on a baseline.
     pub fn text(&mut self, at: [f64; 2], text: &str, size: f64, anchor: Anchor) {
         self.text_in(at, text, size, anchor, Colour::grey(20));
+    }
+
+    /// Writes a title centred on a baseline, in smaller letters or cut short when it is wider than its room.
+    pub(super) fn title(&mut self, at: [f64; 2], text: &str, size: f64, width: f64) {
+        let size = (size * width / text_width(text, size).max(1.0)).clamp(0.75 * size, size);
+        self.text(at, &shortened(text, size, width), size, Anchor::Middle);
     }
 
     /// Writes a line of text on a baseline, in a colour.

@@ -23,6 +23,15 @@ pub(super) fn choose(span: &Span, most: usize) -> Ticks {
     }
 }
 
+/// The ticks asked for, as far as they lie on the axis.
+pub(super) fn given(span: &Span, values: &[f64]) -> Ticks {
+    let on_axis = |value: f64| span.share(value).filter(|share| (-1e-9..=1.0 + 1e-9).contains(share));
+    let text = |value: f64| if value < 0.0 { format!("−{}", -value) } else { format!("{value}") };
+    let mut major: Vec<_> = values.iter().filter_map(|&value| Some((on_axis(value)?, text(value + 0.0)))).collect();
+    major.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Ticks { major, ..Ticks::default() }
+}
+
 /// A step of 1, 2 or 5 times a power of ten, as (digit, exponent), that cuts the span into at most `most` parts.
 fn round_step(span: f64, most: usize) -> (f64, i32) {
     let wanted = span / most as f64;
@@ -174,6 +183,14 @@ mod tests {
         assert_eq!(ticks.factor, "10⁻⁶");
         assert_eq!(ticks.major.iter().map(|t| t.1.as_str()).collect::<Vec<_>>(), ["0", "1", "2", "3", "4"]);
         assert_eq!(choose(&Span { scale: Scale::Linear, low: 0.0, high: 3e8 }, 3).factor, "10⁶");
+    }
+
+    #[test]
+    fn sieves_are_ticks_where_they_lie_on_the_axis() {
+        let span = Span { scale: Scale::Log10, low: 1.0, high: 2.0 };
+        let ticks = given(&span, &[63.0, 22.4, 31.5, 125.0, 0.0]);
+        assert_eq!(ticks.major.iter().map(|t| t.1.as_str()).collect::<Vec<_>>(), ["22.4", "31.5", "63"]);
+        assert!((ticks.major[0].0 - 22.4_f64.log10() + 1.0).abs() < 1e-12);
     }
 
     #[test]
