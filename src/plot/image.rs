@@ -36,6 +36,12 @@ impl Image {
         Self { width, height, pixels }
     }
 
+    /// The picture with every pixel repeated, so that a viewer that blurs pictures blurs a small part of each.
+    pub(super) fn enlarged(&self) -> Self {
+        let times = (1600 / self.width.max(self.height).max(1)).clamp(1, 64);
+        self.stretched(self.width * times, self.height * times)
+    }
+
     /// The picture at half the size: each pixel is the mean of four. An odd last row or column is left out.
     pub(super) fn halved(&self) -> Self {
         let (width, height) = (self.width / 2, self.height / 2);

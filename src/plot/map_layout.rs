@@ -178,10 +178,13 @@ fn draw_absorbing(sheet: &mut Sheet, map: &MapFigure, frame: &Rect) {
     if !(x0 < x1 && y0 < y1 && frame.encloses(&Rect::new(x0, y0, x1 - x0, y1 - y0))) {
         return;
     }
-    let outline = [[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]];
-    sheet.line(outline.to_vec(), Colour::WHITE, 2.2);
-    for dash in dashed(&outline, &[6.0, 4.0]) {
-        sheet.line(dash, OUTLINE, 1.2);
+    let corners = [[x0, y0], [x0, y1], [x1, y1], [x1, y0]];
+    for (side, _) in [left, bottom, right, top].into_iter().enumerate().filter(|(_, depth)| *depth > 0.0) {
+        let ends = [corners[side], corners[(side + 1) % 4]];
+        sheet.line(ends.to_vec(), Colour::WHITE, 2.2);
+        for dash in dashed(&ends, &[6.0, 4.0]) {
+            sheet.line(dash, OUTLINE, 1.2);
+        }
     }
     let place = Rect::new(x0 + 4.0, y0 + 4.0, text_width("absorbing layer outside", LABEL_SIZE) + 6.0, LABEL_HEIGHT);
     if Rect::new(x0, y0, x1 - x0, y1 - y0).encloses(&place) {

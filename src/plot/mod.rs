@@ -23,6 +23,7 @@ mod error;
 mod figure;
 mod font;
 mod image;
+mod legend;
 mod map;
 mod map_layout;
 mod packing;

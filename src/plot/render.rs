@@ -268,7 +268,7 @@ fn finish_svg(sheet: &Sheet, canvas: [u32; 2], drawn: &str) -> Result<String, Pl
                      image-rendering=\"optimizeSpeed\" style=\"image-rendering:pixelated\" href=\"data:image/png;base64,{}\"/>",
                     right - x,
                     bottom - y,
-                    base64(&image.png()?)
+                    base64(&image.enlarged().png()?)
                 );
             }
         } else if line.starts_with("<text") {
