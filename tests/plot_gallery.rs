@@ -8,8 +8,8 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use ballast_gpr::plot::{
-    Axis, Band, Chart, Figure, MapFigure, MapLayer, MapSymbol, Marker, PackingFigure, Panels, ReferenceLine, Series,
-    Stroke, SymbolKind,
+    Axis, Band, Chart, Figure, MapFigure, MapLayer, MapSymbol, Mark, Marker, PackingFigure, Panels, ReferenceLine,
+    Series, Stroke, SymbolKind, viridis,
 };
 
 /// A Ricker wavelet of 1 GHz centred at `t0` ns.
@@ -286,6 +286,21 @@ fn a_map_is_drawn() {
     check("map", &map(), &words);
     let svg = map().svg().unwrap();
     assert!(svg.contains("href=\"data:image/png;base64,iVBORw0KGgo"), "the picture is no PNG");
+}
+
+/// Cells are stored column by column, upwards: of four cells (air, 3; infinity, 4) the second is top left and the
+/// third, a conductor, is bottom right.
+#[test]
+fn a_map_stands_upright() {
+    let map = MapFigure::new("", vec![1.0, 3.0, f32::INFINITY, 4.0], [2, 2], [1.0, 1.0]);
+    let sheet = map.lay_out().unwrap();
+    let image = sheet.marks.iter().find_map(|mark| match mark {
+        Mark::Picture { image, .. } => Some(image),
+        _ => None,
+    });
+    let pixels: Vec<_> = image.unwrap().pixels.chunks_exact(3).collect();
+    let (lowest, highest) = (viridis(1.0).rgb, viridis(0.0).rgb);
+    assert_eq!(pixels, [lowest, highest, [255; 3], [0; 3]]);
 }
 
 /// A curve that moved in whole points would look stepped: a slow sine must take positions between quarters of them.

@@ -364,17 +364,20 @@ fn draw_labels(sheet: &mut Sheet, chart: &Chart, plan: &Plane, room: &mut Room) 
         .filter(|(_, at)| frame.contains(*at))
         .collect();
     room.taken.extend(spots.iter().map(|(_, [x, y])| Rect::new(x - 5.0, y - 5.0, 10.0, 10.0)));
-    for (marker, at) in &spots {
-        sheet.disc(*at, 5.0, Colour::WHITE);
-        draw_symbol(sheet, *at, marker.colour, 4.0);
-        if marker.label.is_empty() {
-            continue;
-        }
+    let mut labels = Vec::new();
+    for (marker, at) in spots.iter().filter(|(marker, _)| !marker.label.is_empty()) {
         let width = text_width(&marker.label, LABEL_SIZE) + 6.0;
         if let Some(place) = room.claim(&frame, around(*at, width, LABEL_HEIGHT)) {
             draw_leader(sheet, *at, &place);
-            draw_label(sheet, &place, &marker.label);
+            labels.push((place, marker.label.as_str()));
         }
+    }
+    for (marker, at) in &spots {
+        sheet.disc(*at, 5.0, Colour::WHITE);
+        draw_symbol(sheet, *at, marker.colour, 4.0);
+    }
+    for (place, label) in labels {
+        draw_label(sheet, &place, label);
     }
 }
 
