@@ -16,11 +16,15 @@ pub(super) struct Ticks {
 /// Chooses at most `most` labelled ticks (and at least two where the span allows it).
 pub(super) fn choose(span: &Span, most: usize) -> Ticks {
     let most = most.clamp(2, 40);
-    match span.scale {
+    let mut ticks = match span.scale {
         Scale::Linear => linear(span.low, span.high, most),
         Scale::Log10 if span.high - span.low < 0.7 => within_a_decade(span, most),
         Scale::Log10 => decades(span, most),
-    }
+    };
+    let on_axis = |share: f64| (-1e-6..=1.0 + 1e-6).contains(&share);
+    ticks.major.retain(|(share, _)| on_axis(*share));
+    ticks.minor.retain(|share| on_axis(*share));
+    ticks
 }
 
 /// The ticks asked for, as far as they lie on the axis.
@@ -118,6 +122,10 @@ fn decades(span: &Span, most: usize) -> Ticks {
 
 /// Ticks at round numbers on a logarithmic axis too short for powers of ten.
 fn within_a_decade(span: &Span, most: usize) -> Ticks {
+    // Beyond these powers the ends are no longer numbers of full precision.
+    if span.low < -290.0 || span.high > 290.0 {
+        return Ticks::default();
+    }
     let (low, high) = (ten_to_real(span.low), ten_to_real(span.high));
     let plain = linear(low, high, most.min(6));
     let place = |share: f64| ((low + share * (high - low)).log10() - span.low) / (span.high - span.low);
@@ -183,6 +191,16 @@ mod tests {
         assert_eq!(ticks.factor, "10⁻⁶");
         assert_eq!(ticks.major.iter().map(|t| t.1.as_str()).collect::<Vec<_>>(), ["0", "1", "2", "3", "4"]);
         assert_eq!(choose(&Span { scale: Scale::Linear, low: 0.0, high: 3e8 }, 3).factor, "10⁶");
+    }
+
+    /// The ends of such axes are beyond the numbers; a tick of them would lie far off the sheet.
+    #[test]
+    fn extreme_logarithmic_axes_have_no_ticks_off_the_axis() {
+        for (low, high) in [(-307.9, -307.5), (299.6, 300.4), (-310.0, 312.0), (-0.01, 0.02)] {
+            let ticks = choose(&Span { scale: Scale::Log10, low, high }, 8);
+            let shares = ticks.major.iter().map(|t| t.0).chain(ticks.minor);
+            assert!(shares.clone().all(|share| (-1e-6..=1.000_001).contains(&share)), "{low} to {high}");
+        }
     }
 
     #[test]
