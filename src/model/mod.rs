@@ -4,6 +4,7 @@
 //! boundaries: the content of a gprMax input file. It is built from a scene by `raster` or from anybody's `.in` file by
 //! `gprmax`, and both solvers take it. [`paint`] turns the objects into cells and edges by gprMax's rules.
 
+mod check;
 mod effects;
 mod grid;
 mod material;
@@ -12,6 +13,10 @@ mod paint;
 mod source;
 mod spec;
 
+pub use check::{
+    CheckError, LEAST_CELLS_PER_WAVELENGTH, Resolution, WANTED_CELLS_PER_WAVELENGTH, available_memory,
+    check_absorbing_cells, check_memory, check_stability_factor, mebibytes,
+};
 pub use effects::{Effect, Effects};
 pub use grid::{Grid, ceil_half_down};
 pub use material::{DebyePole, Material, MaterialId};

@@ -1,0 +1,143 @@
+//! Why the embedded solver gave no traces.
+
+use super::instructions::InstructionSet;
+use crate::forward::ForwardError;
+use crate::model::{Axis, CheckError, PaintError};
+
+/// Why the embedded solver gave no traces.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FdtdError {
+    /// The objects cannot be painted.
+    #[error(transparent)]
+    Paint(#[from] PaintError),
+    /// The model cannot be run on this grid or machine.
+    #[error(transparent)]
+    Check(#[from] CheckError),
+    /// A magnetic material.
+    #[error(
+        "`{material}` is magnetic (mu_r {mu_r}, magnetic loss {sigma_magnetic} ohm/m), which the embedded solver does not \
+         know\n\nhint: run it with `--solver gprmax`"
+    )]
+    Magnetic {
+        /// Identifier of the material.
+        material: String,
+        /// Its relative permeability.
+        mu_r: f64,
+        /// Its magnetic loss, ohm/m.
+        sigma_magnetic: f64,
+    },
+    /// A material with more Debye poles than there are kernels for.
+    #[error("`{material}` has {poles} Debye poles, at most {most} are known\n\nhint: run it with `--solver gprmax`")]
+    TooManyPoles {
+        /// Identifier of the material.
+        material: String,
+        /// Its poles.
+        poles: usize,
+        /// The most that are known.
+        most: usize,
+    },
+    /// A material with a value that nature does not have.
+    #[error("`{material}` has a {quantity} of {value}, but at least {least} is needed")]
+    Material {
+        /// Identifier of the material.
+        material: String,
+        /// Which value.
+        quantity: &'static str,
+        /// The value.
+        value: f64,
+        /// The least it may be.
+        least: f64,
+    },
+    /// A source or receiver outside the grid.
+    #[error("{what} lies outside the grid: {} = {position} m, but the grid ends at {size} m", axis.name())]
+    OutsideGrid {
+        /// Its name, or `source 1`.
+        what: String,
+        /// Along which axis.
+        axis: Axis,
+        /// Where, m.
+        position: f64,
+        /// Size of the grid along this axis, m.
+        size: f64,
+    },
+    /// A source on the outer wall, where E is zero.
+    #[error("source {number} lies on the outer wall, at node ({i}, {j}), where E stays zero\n\nhint: move it inwards")]
+    SourceOnWall {
+        /// Place in the list of sources, from 1.
+        number: usize,
+        /// Node along x.
+        i: usize,
+        /// Node along y.
+        j: usize,
+    },
+    /// A source in a perfect conductor, where E is zero.
+    #[error("source {number} lies in a perfect conductor, at node ({i}, {j}), where E stays zero\n\nhint: move it out")]
+    SourceInConductor {
+        /// Place in the list of sources, from 1.
+        number: usize,
+        /// Node along x.
+        i: usize,
+        /// Node along y.
+        j: usize,
+    },
+    /// A source across the plane, which drives fields that a grid along z does not hold.
+    #[error(
+        "source {number} is polarised along {}: a two-dimensional grid along z holds only sources along z\n\n\
+         hint: turn it to z, or run it with `--solver gprmax`",
+        axis.name()
+    )]
+    Polarisation {
+        /// Place in the list of sources, from 1.
+        number: usize,
+        /// Its direction.
+        axis: Axis,
+    },
+    /// A source with a waveform that the model does not hold.
+    #[error("source {number} asks for waveform number {waveform}, but the model has {waveforms}")]
+    NoSuchWaveform {
+        /// Place in the list of sources, from 1.
+        number: usize,
+        /// The index asked for.
+        waveform: usize,
+        /// How many there are.
+        waveforms: usize,
+    },
+    /// Instructions that this machine does not have.
+    #[error("this machine has no {} instructions\n\nhint: leave the choice to the program", set.name())]
+    NoSuchInstructions {
+        /// What was asked for.
+        set: InstructionSet,
+    },
+    /// Fields that grew beyond reason.
+    #[error(
+        "the field at step {step} is {value:e} V/m at node ({i}, {j}), ({x} m, {y} m): the run diverged\n\n\
+         hint: please report the model; a smaller `#time_step_stability_factor` may help"
+    )]
+    Diverged {
+        /// Step at which it was seen.
+        step: usize,
+        /// Node along x.
+        i: usize,
+        /// Node along y.
+        j: usize,
+        /// Position of the node, m.
+        x: f64,
+        /// Position of the node, m.
+        y: f64,
+        /// E there, V/m.
+        value: f64,
+    },
+    /// The caller asked to stop.
+    #[error("stopped on request")]
+    Stopped,
+}
+
+impl From<FdtdError> for ForwardError {
+    fn from(error: FdtdError) -> Self {
+        match error {
+            FdtdError::Stopped => Self::Stopped,
+            FdtdError::Diverged { .. } | FdtdError::NoSuchInstructions { .. } => Self::Solver(Box::new(error)),
+            model => Self::Model(Box::new(model)),
+        }
+    }
+}

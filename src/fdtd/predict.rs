@@ -1,0 +1,114 @@
+//! What a run will cost, before it is begun.
+
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
+
+use super::FdtdError;
+use super::coefficients::Edge;
+use super::layout::{Rows, padded_width};
+use super::setup::Setup;
+use super::solver::{Fdtd, Precision};
+use crate::model::{DebyePole, Grid, Material, Model, Object, Painted, TimeWindow, paint};
+
+/// What a run will cost.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Prediction {
+    /// Memory of the fields and coefficients, bytes.
+    pub bytes: u64,
+    /// Wall time of the loop over the steps, s.
+    pub seconds: f64,
+    /// Cells times steps.
+    pub cell_steps: u64,
+}
+
+/// Cells of the trial runs: enough to leave the inner caches when the model does.
+const TRIAL_CELLS: usize = 3_000_000;
+/// Cell-steps of a trial run: some milliseconds.
+const TRIAL_CELL_STEPS: usize = 12_000_000;
+
+/// Predicts memory and wall time in single precision, from trial runs of a few milliseconds on this machine.
+///
+/// The trials have rows as long as the model's, the same coefficients and the same threads; the time of the dispersive
+/// nodes is the difference of two of them.
+///
+/// # Errors
+/// Whatever the solver cannot do, as [`Fdtd::solve_stats`] would say it.
+pub fn predict(model: &Model, painted: &Painted, threads: Option<NonZeroUsize>) -> Result<Prediction, FdtdError> {
+    let setup = Setup::new(model, painted)?;
+    let fdtd = Fdtd { threads, ..Fdtd::default() };
+    let bytes = bytes_needed(&setup, Precision::Single);
+    let cells = model.grid.cell_count();
+    let poles = poles_per_node(&setup);
+    let plain = trial(&fdtd, model, setup.lossy(), 0)?;
+    let mut per_step = plain * cells as f64;
+    for (count, &nodes) in poles.iter().enumerate().skip(1).filter(|(_, nodes)| **nodes > 0) {
+        let extra = (trial(&fdtd, model, setup.lossy(), count)? - plain).max(0.0);
+        per_step += extra * nodes as f64;
+    }
+    let steps = setup.iterations;
+    Ok(Prediction { bytes, seconds: per_step * steps as f64, cell_steps: cells as u64 * steps as u64 })
+}
+
+/// Seconds per cell and step of an even material on a grid with the model's rows.
+fn trial(fdtd: &Fdtd, model: &Model, lossy: bool, poles: usize) -> Result<f64, FdtdError> {
+    let [nx, ny, _] = model.grid.cells;
+    let nx = nx.min((TRIAL_CELLS / ny).max(32));
+    let steps = (TRIAL_CELL_STEPS / (nx * ny)).clamp(4, 2000);
+    let grid = Grid { cells: [nx, ny, 1], spacing: model.grid.spacing };
+    let mut even = Model::new("", grid, TimeWindow::Iterations(steps));
+    even.pml_cells = model.pml_cells.filter(|side| side[0] + side[3] < nx).or(Some([0; 6]));
+    even.threads = model.threads;
+    let mut material = Material::dielectric("trial", 4.0, if lossy { 0.01 } else { 0.0 });
+    material.poles = (0..poles).map(|pole| DebyePole { delta_eps: 1.0, tau: 1e-11 * (pole + 1) as f64 }).collect();
+    material.averagable = poles == 0;
+    let id = even.add_material(material);
+    even.objects.push(Object::Box { lower: [0.0; 3], upper: [f64::MAX; 3], material: id, averaging: true });
+    let painted = paint(&even)?;
+    // The first run warms the machine up.
+    let mut seconds = f64::INFINITY;
+    for _ in 0..2 {
+        let (_, stats) = fdtd.solve_painted(&even, &painted, &|_| ControlFlow::Continue(()))?;
+        seconds = seconds.min(stats.wall.si());
+    }
+    // A run records as many samples as it has steps, and steps once less.
+    Ok(seconds / ((steps - 1) * nx * ny) as f64)
+}
+
+/// How many nodes have 0, 1, 2, … Debye poles.
+fn poles_per_node(setup: &Setup<'_>) -> Vec<usize> {
+    let mut nodes = vec![0; super::coefficients::MOST_POLES + 1];
+    let per_entry = setup.painted.edges_per_entry();
+    for (edge, count) in setup.edges.iter().zip(per_entry) {
+        nodes[edge.poles.len()] += count;
+    }
+    nodes
+}
+
+/// Memory while objects are painted: cells, claims and edges.
+pub fn painting_bytes(model: &Model) -> u64 {
+    model.grid.cell_count() as u64 * 9
+}
+
+/// Memory of the fields, the coefficients and the absorbing boundary of a run, bytes.
+pub fn bytes_needed(setup: &Setup<'_>, precision: Precision) -> u64 {
+    match precision {
+        Precision::Single => bytes::<f32>(setup),
+        Precision::Double => bytes::<f64>(setup),
+    }
+}
+
+fn bytes<T: super::real::Real>(setup: &Setup<'_>) -> u64 {
+    let [nx, ny] = setup.painted.cells_xy;
+    let width = padded_width(ny);
+    let arrays = if setup.lossy() { 5 } else { 4 };
+    let [x0, y0, x1, y1] = &setup.slabs;
+    let columns: u64 = [y0, y1].iter().map(|slab| 2 * Rows::<T>::bytes(nx, slab.cells)).sum();
+    let poles: usize = poles_per_node(setup).iter().enumerate().map(|(poles, nodes)| poles * nodes).sum();
+    let samples = setup.receivers.len() * 6 * 8 + setup.drives.len() * (8 + size_of::<T>());
+    arrays * Rows::<T>::bytes(nx + 1, width)
+        + 2 * Rows::<T>::bytes(x0.cells + x1.cells, width)
+        + columns
+        + (poles * size_of::<T>()) as u64
+        + (samples * setup.iterations) as u64
+        + (setup.edges.len() * size_of::<Edge>()) as u64
+}

@@ -1,0 +1,36 @@
+//! The two precisions of the fields.
+
+use std::ops::{Add, Mul, Sub};
+
+/// A number that a field may hold: `f32` or `f64`.
+pub trait Real:
+    Copy + PartialOrd + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Default + Send + Sync + 'static
+{
+    /// The nearest number of this precision.
+    fn of(value: f64) -> Self;
+    /// The same number in double precision.
+    fn double(self) -> f64;
+    /// Its magnitude.
+    fn magnitude(self) -> Self;
+}
+
+macro_rules! real {
+    ($($precision:ty),+) => {$(
+        impl Real for $precision {
+            #[inline(always)]
+            fn of(value: f64) -> Self {
+                value as Self
+            }
+            #[inline(always)]
+            fn double(self) -> f64 {
+                f64::from(self)
+            }
+            #[inline(always)]
+            fn magnitude(self) -> Self {
+                self.abs()
+            }
+        }
+    )+};
+}
+
+real!(f32, f64);
