@@ -91,25 +91,27 @@ fn echo_errors(material: Material, thickness: Option<f64>) -> [f64; 2] {
     })
 }
 
-/// Ballast stone, eps_r 6, as a half-space. The highest frequency has 11 and 22 cells per wavelength inside.
+/// Ballast stone, eps_r 6, as a half-space. The highest frequency has 11 and 22 cells per wavelength inside; by
+/// `(k d)²/24` a wave of the centre frequency loses 1e-3 of its phase per radian at 22 x 2.76 cells, hence the tolerance
+/// (1.3e-3 found), and a quarter of the error at half the cell size.
 #[test]
 fn a_half_space_reflects_by_fresnel() {
     let [coarse, fine] = echo_errors(Material::dielectric("stone", 6.0, 0.0), None);
-    assert!(fine < 2e-3 && fine < coarse / 3.0, "{coarse:e} {fine:e}");
+    assert!(fine < 1.5e-3 && fine < coarse / 3.5, "{coarse:e} {fine:e}");
 }
 
 /// A slab of 80 mm, eps_r 4, lossless: both faces and what goes to and fro between them.
 #[test]
 fn a_slab_rings_by_fresnel() {
     let [coarse, fine] = echo_errors(Material::dielectric("slab", 4.0, 0.0), Some(0.08));
-    assert!(fine < 1e-2 && fine < coarse / 3.0, "{coarse:e} {fine:e}");
+    assert!(fine < 3.5e-3 && fine < coarse / 3.5, "{coarse:e} {fine:e}");
 }
 
 /// Conducting clay, a half-space of 0.2 S/m: the reflection turns with frequency.
 #[test]
 fn a_conducting_half_space_reflects_by_fresnel() {
     let [coarse, fine] = echo_errors(Material::dielectric("clay", 8.0, 0.2), None);
-    assert!(fine < 3e-3 && fine < coarse / 3.0, "{coarse:e} {fine:e}");
+    assert!(fine < 2e-3 && fine < coarse / 3.5, "{coarse:e} {fine:e}");
 }
 
 /// A Debye half-space that relaxes at 1.6 GHz, in the middle of the pulse. Its surface is not averaged (as in gprMax), so

@@ -226,3 +226,65 @@ fn diverged(setup: &Setup<'_>, step: usize, [i, j]: [usize; 2], value: f64) -> F
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fdtd::InstructionSet;
+    use crate::model::{
+        Axis, Excitation, Grid, HertzianDipole, Model, Receiver, Source, TimeWindow, Waveform, WaveformKind, paint,
+    };
+
+    fn model(nx: usize, ny: usize, steps: usize) -> Model {
+        let d = 0.002;
+        let mut model = Model::new("", Grid { cells: [nx, ny, 1], spacing: [d; 3] }, TimeWindow::Iterations(steps));
+        model.pml_cells = Some([3, 2, 0, 4, 1, 0]);
+        model.waveforms.push(Waveform { id: "w".into(), kind: WaveformKind::Ricker, amplitude: 1.0, frequency: 1e9 });
+        let position = [d * (nx / 2) as f64, d * (ny / 2) as f64, 0.0];
+        let excitation = Excitation { start: 0.0, stop: None };
+        let dipole = HertzianDipole { polarisation: Axis::Z, position, waveform: 0, excitation };
+        model.sources.push(Source::HertzianDipole(dipole));
+        for i in 0..=nx {
+            model.receivers.push(Receiver { position: [d * i as f64, d * (i % ny) as f64, 0.0], name: None });
+        }
+        model
+    }
+
+    fn go(model: &Model, threads: usize, faster: f64) -> Result<Vec<Vec<f64>>, FdtdError> {
+        let painted = paint(model).unwrap();
+        let mut setup = Setup::new(model, &painted).unwrap();
+        setup.edges.iter_mut().for_each(|edge| edge.cb *= faster);
+        let sweep = InstructionSet::Auto.resolve().unwrap();
+        let (mut probes, _) = run(blocks::<f32>(&setup, threads), &setup, sweep, &|_| ControlFlow::Continue(()))?;
+        probes.sort_by_key(|probe| probe.receiver);
+        assert_eq!(probes.len(), model.receivers.len());
+        Ok(probes.into_iter().flat_map(|probe| probe.samples).collect())
+    }
+
+    /// Blocks down to a single row, walls and absorbing rows cut through: the same bits at every node along a diagonal.
+    #[test]
+    fn any_cut_gives_the_same_bits() {
+        let model = model(15, 9, 300);
+        let whole = go(&model, 1, 1.0).unwrap();
+        assert!(whole.iter().flatten().any(|v| *v != 0.0));
+        for threads in [2, 3, 7, 14] {
+            assert!(go(&model, threads, 1.0).unwrap() == whole, "{threads}");
+        }
+    }
+
+    /// A scheme made unstable (a step beyond the Courant limit by 5 %) is stopped, and the place is in the grid.
+    #[test]
+    fn a_diverging_run_is_stopped_at_a_place() {
+        for threads in [1, 3] {
+            let model = model(40, 40, 100_000);
+            match go(&model, threads, 1.1) {
+                Err(FdtdError::Diverged { step, i, j, value, .. }) => {
+                    assert!((10..20_000).contains(&step), "{step}");
+                    assert!((1..40).contains(&i) && (1..40).contains(&j));
+                    assert!(!(value.abs() < 1e8), "{value}");
+                }
+                other => panic!("{other:?}"),
+            }
+        }
+    }
+}
