@@ -1,6 +1,7 @@
 //! The embedded solver against closed forms: Hankel's function in free space, Fresnel's coefficients under Sommerfeld's
 //! integral above slabs and half-spaces.
 
+#[expect(dead_code, reason = "what lies below the face is used elsewhere")]
 #[path = "fdtd_support/exact.rs"]
 mod exact;
 mod fdtd_support;

@@ -7,8 +7,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use ballast_gpr::fdtd::{Fdtd, FdtdError, InstructionSet, Precision, predict};
 use ballast_gpr::forward::{Forward, ForwardError};
-use ballast_gpr::model::{Axis, DebyePole, Material, MaterialId, Model, Object, Source, paint};
+use ballast_gpr::model::{Axis, DebyePole, Material, MaterialId, Model, Object, Receiver, Source, paint};
 use ballast_gpr::trace::{Component, Traces};
+use ballast_gpr::units::constants::MU_0;
 use fdtd_support::{box_of, fdtd, run, scene};
 
 /// All effects at once: conduction, two Debye materials, a conductor, averaging, the absorbing boundary.
@@ -68,9 +69,29 @@ fn traces_are_laid_out_as_gprmax_lays_them_out() {
         let dead = matches!(trace.component, Component::Ex | Component::Ey | Component::Hz);
         assert_eq!(trace.peak() == 0.0, dead, "{:?}", trace.component);
     }
-    // In free space |H| is about |E|/377 ohm; along x it is Hy.
-    let peak = |component| traces.receivers[1].component(component).unwrap().peak();
-    assert!((peak(Component::Ez) / peak(Component::Hy) / 376.73 - 1.0).abs() < 0.3);
+}
+
+/// H is in A/m and half a step before E: `mu0 (Hy' - Hy)/dt = (Ez_{i+1} - Ez_i)/dx`, `mu0 (Hx' - Hx)/dt = -(Ez_{j+1} - Ez_j)/dy`
+/// between the traces of neighbouring receivers. Tolerance: rounding of 300 steps in double precision.
+#[test]
+fn traces_fulfil_faradays_law() {
+    let mut model = scene([40, 40], 0.002, 300, [20, 20], &[]);
+    model.grid.spacing = [0.002, 0.003, 0.004];
+    let node = |i: usize, j: usize| [i as f64 * 0.002, j as f64 * 0.003, 0.0];
+    let receiver = |position| Receiver { position, name: None };
+    let Source::HertzianDipole(dipole) = &mut model.sources[0];
+    dipole.position = node(20, 20);
+    model.receivers = vec![receiver(node(24, 23)), receiver(node(25, 23)), receiver(node(24, 24))];
+    let traces = run(&fdtd(Precision::Double, 1, InstructionSet::Auto), &model).unwrap();
+    let of = |receiver: usize, component| &traces.receivers[receiver].component(component).unwrap().samples;
+    let (ez, ez_east, ez_north) = (of(0, Component::Ez), of(1, Component::Ez), of(2, Component::Ez));
+    let scale = MU_0 / traces.time_step.si();
+    for n in 0..299 {
+        let rise = |component| of(0, component)[n + 1] - of(0, component)[n];
+        let (east, north) = ((ez_east[n] - ez[n]) / 0.002, (ez_north[n] - ez[n]) / 0.003);
+        assert!((scale * rise(Component::Hy) - east).abs() < 1e-9 * traces.receivers[0].components[2].peak() / 0.002);
+        assert!((scale * rise(Component::Hx) + north).abs() < 1e-9 * traces.receivers[0].components[2].peak() / 0.002);
+    }
 }
 
 #[test]

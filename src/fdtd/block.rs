@@ -4,8 +4,9 @@
 //! walls, which stay zero). A block repeats the step of `Hy` west of its first row, so that only E rows are exchanged,
 //! once per step, and the bits do not depend on how the grid is cut.
 
-use super::coefficients::{Edge, Slab};
-use super::kernel::{self, ColumnProfile, Relaxation, RowProfile};
+use super::coefficients::Slab;
+use super::dispersion::Dispersion;
+use super::kernel::{self, ColumnProfile, RowProfile};
 use super::layout::{LANES, Rows, padded_width};
 use super::real::Real;
 use super::setup::Setup;
@@ -24,8 +25,8 @@ pub struct Block<T> {
     cb: Rows<T>,
     /// Present only where something conducts.
     ca: Option<Rows<T>>,
-    absorb_e: Vec<Option<(usize, RowProfile<T>)>>,
-    absorb_h: Vec<Option<(usize, RowProfile<T>)>>,
+    absorb_e: Vec<AbsorbingRow<T>>,
+    absorb_h: Vec<AbsorbingRow<T>>,
     phi_e: Rows<T>,
     phi_h: Rows<T>,
     columns: Vec<Columns<T>>,
@@ -33,6 +34,9 @@ pub struct Block<T> {
     dispersion: Option<Dispersion<T>>,
     probes: Vec<Probe>,
 }
+
+/// Place in the memory and profile of a row within the absorbing cells at an end of x; `None` for a row outside them.
+type AbsorbingRow<T> = Option<(usize, RowProfile<T>)>;
 
 /// The absorbing cells at one end of y.
 struct Columns<T> {
@@ -52,34 +56,6 @@ struct Drive<T> {
     j: usize,
     /// What is taken from E, per step.
     series: Vec<T>,
-}
-
-/// Polarisation memory of the dispersive nodes, and of no others.
-struct Dispersion<T> {
-    /// Sorted by row.
-    spans: Vec<Span>,
-    memory: Vec<T>,
-    /// E of a row before its step.
-    ez_old: Vec<T>,
-    materials: Vec<Poles<T>>,
-}
-
-/// A run of nodes of one dispersive material.
-struct Span {
-    row: usize,
-    j: usize,
-    count: usize,
-    material: usize,
-    /// Place in the memory, pole after pole.
-    place: usize,
-}
-
-/// The coefficients of a dispersive material.
-#[derive(Clone, Copy)]
-enum Poles<T> {
-    One(Relaxation<T, 1>),
-    Two(Relaxation<T, 2>),
-    Three(Relaxation<T, 3>),
 }
 
 /// A receiver within the block, and what it has recorded.
@@ -112,8 +88,8 @@ impl<T: Real> Block<T> {
         }
         let row_of = |r: usize| (first - 1 + r) as f64;
         let [x0, _, x1, _] = &setup.slabs;
-        let (absorb_e, slots_e) = row_profiles(rows, x0, x1, |r| row_of(r), nx, 0.0);
-        let (absorb_h, slots_h) = row_profiles(rows, x0, x1, |r| row_of(r), nx, 0.5);
+        let (absorb_e, slots_e) = row_profiles(rows, x0, x1, row_of, nx, 0.0);
+        let (absorb_h, slots_h) = row_profiles(rows, x0, x1, row_of, nx, 0.5);
         let [_, y0, _, y1] = &setup.slabs;
         let columns = [(y0, true), (y1, false)].into_iter().filter(|(slab, _)| slab.cells > 0);
         let columns = columns.map(|(slab, low)| Columns::new(slab, low, ny, rows)).collect();
@@ -220,10 +196,8 @@ impl<T: Real> Block<T> {
     #[inline(always)]
     fn step_e(&mut self, r: usize, step: usize, progress: &mut Cursor) {
         let n = self.width;
-        if let Some(dispersion) = &mut self.dispersion
-            && dispersion.spans.get(progress.span).is_some_and(|span| span.row == r)
-        {
-            dispersion.ez_old[..n].copy_from_slice(self.ez.at(r, 1, n));
+        if let Some(dispersion) = &mut self.dispersion {
+            dispersion.keep(r, self.ez.at(r, 1, n), progress.span);
         }
         let ez = self.ez.at_mut(r, 1, n);
         let (hx, hx_north) = (self.hx.at(r, 1, n), self.hx.at(r, 2, n));
@@ -248,7 +222,7 @@ impl<T: Real> Block<T> {
             progress.drive += 1;
         }
         if let Some(dispersion) = &mut self.dispersion {
-            dispersion.relax_row(r, self.ez.at_mut(r, 1, n), progress);
+            dispersion.relax_row(r, self.ez.at_mut(r, 1, n), &mut progress.span);
         }
     }
 
@@ -264,7 +238,7 @@ impl<T: Real> Block<T> {
 
     /// The first node whose E is not a number or larger than `limit`, as `(i, j)` of the grid.
     pub fn find_beyond(&self, limit: T) -> Option<[usize; 2]> {
-        let beyond = |v: &T| !(v.magnitude() <= limit);
+        let beyond = |v: &T| v.is_beyond(limit);
         (1..=self.rows).find_map(|r| {
             let j = self.ez.at(r, 1, self.width).iter().position(beyond)?;
             Some([self.first - 1 + r, j + 1])
@@ -279,7 +253,7 @@ impl<T: Real> Block<T> {
 
     /// As [`Block::find_beyond`], at the receivers only.
     pub fn find_beyond_at_receivers(&self, limit: T) -> Option<[usize; 2]> {
-        let beyond = |probe: &&Probe| !(self.ez.at(probe.row, probe.j, 1)[0].magnitude() <= limit);
+        let beyond = |probe: &&Probe| self.ez.at(probe.row, probe.j, 1)[0].is_beyond(limit);
         self.probes.iter().find(beyond).map(|probe| [self.first - 1 + probe.row, probe.j])
     }
 }
@@ -304,7 +278,7 @@ fn row_profiles<T: Real>(
     row_of: impl Fn(usize) -> f64,
     nx: usize,
     shift: f64,
-) -> (Vec<Option<(usize, RowProfile<T>)>>, usize) {
+) -> (Vec<AbsorbingRow<T>>, usize) {
     let mut slots = 0;
     let mut of_row = |r: usize| {
         let i = row_of(r) + shift;
@@ -335,76 +309,5 @@ impl<T: Real> Columns<T> {
         };
         let phi = || Rows::zeros(rows + 1, count.next_multiple_of(LANES));
         Self { j, count, e: sample(0.0), h: sample(0.5), phi_e: phi(), phi_h: phi() }
-    }
-}
-
-impl<T: Real> Dispersion<T> {
-    /// Finds the runs of dispersive nodes; `None` where there are none.
-    fn new(setup: &Setup<'_>, first: usize, rows: usize) -> Option<Self> {
-        let materials: Vec<(u32, Poles<T>)> =
-            setup.edges.iter().enumerate().filter_map(|(entry, edge)| Some((entry as u32, Poles::of(edge)?))).collect();
-        let ny = setup.painted.cells_xy[1];
-        let (mut spans, mut place): (Vec<Span>, usize) = (vec![], 0);
-        for row in 1..=rows {
-            let entries = &setup.painted.edge_z[(first - 1 + row) * (ny + 1)..][..ny];
-            let mut j = 1;
-            for run in entries[1..].chunk_by(|a, b| a == b) {
-                if let Some(material) = materials.iter().position(|(entry, _)| *entry == run[0]) {
-                    spans.push(Span { row, j, count: run.len(), material, place });
-                    place += run.len() * materials[material].1.count();
-                }
-                j += run.len();
-            }
-        }
-        let materials = materials.into_iter().map(|(_, poles)| poles).collect();
-        let ez_old = vec![T::default(); padded_width(ny)];
-        (!spans.is_empty()).then(|| Self { spans, memory: vec![T::default(); place], ez_old, materials })
-    }
-
-    #[inline(always)]
-    fn relax_row(&mut self, r: usize, ez: &mut [T], progress: &mut Cursor) {
-        while let Some(span) = self.spans.get(progress.span).filter(|span| span.row == r) {
-            let nodes = span.j - 1..span.j - 1 + span.count;
-            let (ez, ez_old) = (&mut ez[nodes.clone()], &self.ez_old[nodes]);
-            let memory = &mut self.memory[span.place..];
-            match &self.materials[span.material] {
-                Poles::One(c) => {
-                    kernel::relax(ez, ez_old, [&mut memory[..span.count]], c);
-                }
-                Poles::Two(c) => {
-                    let (first, rest) = memory.split_at_mut(span.count);
-                    kernel::relax(ez, ez_old, [first, &mut rest[..span.count]], c);
-                }
-                Poles::Three(c) => {
-                    let (first, rest) = memory.split_at_mut(span.count);
-                    let (second, rest) = rest.split_at_mut(span.count);
-                    kernel::relax(ez, ez_old, [first, second, &mut rest[..span.count]], c);
-                }
-            }
-            progress.span += 1;
-        }
-    }
-}
-
-impl<T: Real> Poles<T> {
-    fn of(edge: &Edge) -> Option<Self> {
-        fn relaxation<T: Real, const P: usize>(poles: &[[f64; 3]; P]) -> Relaxation<T, P> {
-            let [give, keep, take] = std::array::from_fn(|k| poles.map(|pole| T::of(pole[k])));
-            Relaxation { give, keep, take }
-        }
-        match edge.poles.as_slice() {
-            &[one] => Some(Self::One(relaxation(&[one]))),
-            &[one, two] => Some(Self::Two(relaxation(&[one, two]))),
-            &[one, two, three] => Some(Self::Three(relaxation(&[one, two, three]))),
-            _ => None,
-        }
-    }
-
-    fn count(&self) -> usize {
-        match self {
-            Self::One(_) => 1,
-            Self::Two(_) => 2,
-            Self::Three(_) => 3,
-        }
     }
 }

@@ -4,9 +4,14 @@
 //! into blocks of rows, one per thread (`block`), and stepped (`team`); the loops over a row are in `kernel`. An effect
 //! that a model does not call for has no array: without conductivity there is no `ca`, the absorbing boundary has memory
 //! in its slabs only, and Debye relaxation on dispersive nodes only.
+//!
+//! Numbers below 1e-38 (single precision) are computed as IEEE 754 has them, never flushed to zero, so that the bits are the
+//! same everywhere. They occur in thin rims only: ahead of the first arrival, and some ninety skin depths inside a
+//! conductor. A field made of nothing else runs at 0.77 of the usual speed (750 x 500 cells, Zen 5, one thread).
 
 mod block;
 mod coefficients;
+mod dispersion;
 mod error;
 mod instructions;
 mod kernel;

@@ -21,12 +21,12 @@ pub struct Prediction {
     pub cell_steps: u64,
 }
 
-/// Cells of the trial runs: enough to leave the inner caches when the model does.
-const TRIAL_CELLS: usize = 3_000_000;
-/// Cell-steps of a trial run: some milliseconds.
-const TRIAL_CELL_STEPS: usize = 12_000_000;
+/// Cells of the trial runs: more than the outer cache holds, so that a larger model runs at the same speed.
+const TRIAL_CELLS: usize = 2_000_000;
+/// Cell-steps of the shorter trial run: one or two milliseconds.
+const TRIAL_CELL_STEPS: usize = 4_000_000;
 
-/// Predicts memory and wall time in single precision, from trial runs of a few milliseconds on this machine.
+/// Predicts memory and wall time in single precision, from trial runs of some ten milliseconds in all on this machine.
 ///
 /// The trials have rows as long as the model's, the same coefficients and the same threads; the time of the dispersive
 /// nodes is the difference of two of them.
@@ -53,9 +53,8 @@ pub fn predict(model: &Model, painted: &Painted, threads: Option<NonZeroUsize>) 
 fn trial(fdtd: &Fdtd, model: &Model, lossy: bool, poles: usize) -> Result<f64, FdtdError> {
     let [nx, ny, _] = model.grid.cells;
     let nx = nx.min((TRIAL_CELLS / ny).max(32));
-    let steps = (TRIAL_CELL_STEPS / (nx * ny)).clamp(4, 2000);
     let grid = Grid { cells: [nx, ny, 1], spacing: model.grid.spacing };
-    let mut even = Model::new("", grid, TimeWindow::Iterations(steps));
+    let mut even = Model::new("", grid, TimeWindow::Iterations(1));
     even.pml_cells = model.pml_cells.filter(|side| side[0] + side[3] < nx).or(Some([0; 6]));
     even.threads = model.threads;
     let mut material = Material::dielectric("trial", 4.0, if lossy { 0.01 } else { 0.0 });
@@ -64,14 +63,19 @@ fn trial(fdtd: &Fdtd, model: &Model, lossy: bool, poles: usize) -> Result<f64, F
     let id = even.add_material(material);
     even.objects.push(Object::Box { lower: [0.0; 3], upper: [f64::MAX; 3], material: id, averaging: true });
     let painted = paint(&even)?;
-    // The first run warms the machine up.
-    let mut seconds = f64::INFINITY;
-    for _ in 0..2 {
-        let (_, stats) = fdtd.solve_painted(&even, &painted, &|_| ControlFlow::Continue(()))?;
-        seconds = seconds.min(stats.wall.si());
-    }
-    // A run records as many samples as it has steps, and steps once less.
-    Ok(seconds / ((steps - 1) * nx * ny) as f64)
+    let mut fastest = |steps: usize| {
+        // One sample more than steps: the last sample is taken after the last step.
+        even.time_window = TimeWindow::Iterations(steps + 1);
+        let run =
+            |_| fdtd.solve_painted(&even, &painted, &|_| ControlFlow::Continue(())).map(|(_, stats)| stats.wall.si());
+        (0..3).map(run).try_fold(f64::INFINITY, |fastest, seconds| Ok::<_, FdtdError>(seconds?.min(fastest)))
+    };
+    // The difference leaves out what a run pays once: starting threads and touching memory for the first time.
+    let steps = (TRIAL_CELL_STEPS / (nx * ny)).clamp(2, 500);
+    let (short, long) = (fastest(steps)?, fastest(4 * steps)?);
+    let marginal = (long - short) / (3 * steps) as f64;
+    let whole = long / (4 * steps) as f64;
+    Ok(if marginal > 0.2 * whole { marginal } else { whole } / (nx * ny) as f64)
 }
 
 /// How many nodes have 0, 1, 2, … Debye poles.

@@ -10,8 +10,8 @@ pub trait Real:
     fn of(value: f64) -> Self;
     /// The same number in double precision.
     fn double(self) -> f64;
-    /// Its magnitude.
-    fn magnitude(self) -> Self;
+    /// Whether its magnitude is larger than a limit, or it is not a number.
+    fn is_beyond(self, limit: Self) -> bool;
 }
 
 macro_rules! real {
@@ -26,8 +26,8 @@ macro_rules! real {
                 f64::from(self)
             }
             #[inline(always)]
-            fn magnitude(self) -> Self {
-                self.abs()
+            fn is_beyond(self, limit: Self) -> bool {
+                self.abs() > limit || self.is_nan()
             }
         }
     )+};

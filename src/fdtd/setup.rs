@@ -2,7 +2,9 @@
 
 use super::FdtdError;
 use super::coefficients::{Edge, Slab, edges, slabs};
-use crate::model::{Axis, CheckError, Model, Painted, Source, check_absorbing_cells, check_stability_factor};
+use crate::model::{
+    Axis, Model, Painted, Source, check_absorbing_cells, check_stability_factor, check_two_dimensional,
+};
 use crate::units::constants::MU_0;
 
 /// All that the blocks are built from.
@@ -81,9 +83,13 @@ impl<'a> Setup<'a> {
 }
 
 /// The checks that need no painting.
-pub fn check_model(model: &Model) -> Result<(), CheckError> {
+///
+/// # Errors
+/// A grid, a time step or absorbing cells that cannot be.
+pub fn check_model(model: &Model) -> Result<(), FdtdError> {
     check_stability_factor(model)?;
-    check_absorbing_cells(model)
+    check_two_dimensional(model)?;
+    Ok(check_absorbing_cells(model)?)
 }
 
 /// Node of a position, if it lies in the grid.

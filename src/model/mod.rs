@@ -21,6 +21,6 @@ pub use effects::{Effect, Effects};
 pub use grid::{Grid, ceil_half_down};
 pub use material::{DebyePole, Material, MaterialId};
 pub use object::{Object, Voxels};
-pub use paint::{EdgeMaterial, PaintError, Painted, paint};
+pub use paint::{EdgeMaterial, PaintError, Painted, check_two_dimensional, paint};
 pub use source::{Axis, Excitation, HertzianDipole, Receiver, Source, Waveform, WaveformKind};
 pub use spec::{Model, TimeWindow};

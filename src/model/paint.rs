@@ -121,15 +121,24 @@ pub enum PaintError {
 /// # Errors
 /// When the grid is not two-dimensional along z, or an object fills no cell or has no such material.
 pub fn paint(model: &Model) -> Result<Painted, PaintError> {
-    let cells = model.grid.cells;
-    if model.grid.invariant_axis() != Some(2) || cells.contains(&0) {
-        return Err(PaintError::NotTwoDimensional { cells });
-    }
+    check_two_dimensional(model)?;
     let mut canvas = Canvas::new(model);
     for (index, object) in model.objects.iter().enumerate() {
         canvas.object(index + 1, object)?;
     }
     Ok(canvas.edges())
+}
+
+/// Refuses grids that are not two-dimensional along z.
+///
+/// # Errors
+/// With the cell counts, when z has more than one cell, or x or y only one.
+pub fn check_two_dimensional(model: &Model) -> Result<(), PaintError> {
+    let cells = model.grid.cells;
+    if model.grid.invariant_axis() != Some(2) || cells.contains(&0) {
+        return Err(PaintError::NotTwoDimensional { cells });
+    }
+    Ok(())
 }
 
 /// Cells and claims while objects are being painted.

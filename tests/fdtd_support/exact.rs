@@ -60,11 +60,6 @@ pub fn free_space(rho: f64) -> impl Fn(Complex64) -> Complex64 {
 pub fn reflected(w: Complex64, eps: Permittivity<'_>, thickness: Option<f64>, height: f64, offset: f64) -> Complex64 {
     let i = Complex64::i();
     let (air, inside) = ((w / C0).powi(2), (w / C0).powi(2) * eps(w));
-    let down = |kx: f64, k2: Complex64| {
-        let ky = (k2 - kx * kx).sqrt();
-        if ky.im > 0.0 { -ky } else { ky }
-    };
-    let kx_step = 0.5;
     let at = |kx: f64| {
         let (k1, k2) = (down(kx, air), down(kx, inside));
         let r = (k1 - k2) / (k1 + k2);
@@ -74,9 +69,32 @@ pub fn reflected(w: Complex64, eps: Permittivity<'_>, thickness: Option<f64>, he
         });
         r * (-i * k1 * height).exp() / k1 * (kx * offset).cos()
     };
-    let last = (w.re / C0 + 40.0 / height) / kx_step;
-    let sum = at(0.0) + (1..last as usize).map(|k| 2.0 * at(k as f64 * kx_step)).sum::<Complex64>();
-    -w * MU_0 / (4.0 * PI) * sum * kx_step
+    -w * MU_0 / (4.0 * PI) * over_kx(w.re / C0 + 40.0 / height, at)
+}
+
+/// What reaches a receiver right below the source, `depth` into a half-space; the source `height` above it:
+/// `-(w mu0/(2 pi)) integral of exp(-i ky1 height - i ky2 depth)/(ky1 + ky2) dkx`.
+pub fn transmitted(w: Complex64, eps: Permittivity<'_>, height: f64, depth: f64) -> Complex64 {
+    let i = Complex64::i();
+    let (air, inside) = ((w / C0).powi(2), (w / C0).powi(2) * eps(w));
+    let at = |kx: f64| {
+        let (k1, k2) = (down(kx, air), down(kx, inside));
+        (-i * (k1 * height + k2 * depth)).exp() / (k1 + k2)
+    };
+    -w * MU_0 / (2.0 * PI) * over_kx(w.re / C0 + 40.0 / height, at)
+}
+
+/// The wave number downwards of a wave that decays downwards.
+fn down(kx: f64, k_squared: Complex64) -> Complex64 {
+    let ky = (k_squared - kx * kx).sqrt();
+    if ky.im > 0.0 { -ky } else { ky }
+}
+
+/// The integral over `kx` from `-last` to `last` of an even function.
+fn over_kx(last: f64, at: impl Fn(f64) -> Complex64) -> Complex64 {
+    let step = 0.5;
+    let sum = at(0.0) + (1..(last / step) as usize).map(|k| 2.0 * at(k as f64 * step)).sum::<Complex64>();
+    sum * step
 }
 
 /// `J0 - i Y0` by their power series (Abramowitz & Stegun 9.1.12, 9.1.13); good to 1e-12 for `|z| < 10`.
