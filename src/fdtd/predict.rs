@@ -55,7 +55,11 @@ fn trial(fdtd: &Fdtd, model: &Model, lossy: bool, poles: usize) -> Result<f64, F
     let nx = nx.min((TRIAL_CELLS / ny).max(32));
     let grid = Grid { cells: [nx, ny, 1], spacing: model.grid.spacing };
     let mut even = Model::new("", grid, TimeWindow::Iterations(1));
-    even.pml_cells = model.pml_cells.filter(|side| side[0] + side[3] < nx).or(Some([0; 6]));
+    let mut absorbing = model.absorbing_cells();
+    if nx < model.grid.cells[0] {
+        (absorbing[0], absorbing[3]) = (0, 0);
+    }
+    even.pml_cells = Some(absorbing);
     even.threads = model.threads;
     let mut material = Material::dielectric("trial", 4.0, if lossy { 0.01 } else { 0.0 });
     material.poles = (0..poles).map(|pole| DebyePole { delta_eps: 1.0, tau: 1e-11 * (pole + 1) as f64 }).collect();

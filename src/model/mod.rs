@@ -10,6 +10,7 @@ mod grid;
 mod material;
 mod object;
 mod paint;
+mod palette;
 mod source;
 mod spec;
 
@@ -21,6 +22,7 @@ pub use effects::{Effect, Effects};
 pub use grid::{Grid, ceil_half_down};
 pub use material::{DebyePole, Material, MaterialId};
 pub use object::{Object, Voxels};
-pub use paint::{EdgeMaterial, PaintError, Painted, check_two_dimensional, paint};
+pub use paint::{PaintError, Painted, check_two_dimensional, paint};
+pub use palette::EdgeMaterial;
 pub use source::{Axis, Excitation, HertzianDipole, Receiver, Source, Waveform, WaveformKind};
 pub use spec::{Model, TimeWindow};

@@ -5,20 +5,8 @@
 //! of them *claims* it: cells painted without averaging, of a perfect conductor or of a dispersive material claim their
 //! edges, and the last to claim an edge gives it its material. Painting a cell anew drops only that cell's own claim.
 
-use std::collections::HashMap;
-
+use super::palette::{EdgeMaterial, Palette};
 use super::{Grid, Material, MaterialId, Model, Object, Voxels};
-
-/// What lies on one edge of the grid.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct EdgeMaterial {
-    /// Relative permittivity at infinite frequency.
-    pub eps_r: f64,
-    /// Conductivity, S/m; infinite on a perfect conductor.
-    pub sigma: f64,
-    /// The one material whose poles act on this edge, if it is dispersive.
-    pub dispersive: Option<MaterialId>,
-}
 
 /// The cells and edges of a two-dimensional model (invariant along z).
 #[derive(Debug, Clone, PartialEq)]
@@ -210,7 +198,7 @@ impl<'a> Canvas<'a> {
     /// Whether a cell of this material claims its edges.
     fn rigid(&self, material: MaterialId, averaging: bool) -> bool {
         let material = &self.materials[material.index()];
-        !averaging || material.is_pec() || !material.averagable
+        !averaging || material.is_pec() || material.is_dispersive() || !material.averagable
     }
 
     #[inline]
@@ -331,56 +319,7 @@ impl<'a> Canvas<'a> {
                 }
             }
         }
-        Painted { cells_xy: [nx, ny], solid: self.solid, palette: palette.entries, edge_z, averaged_edges }
-    }
-}
-
-/// The distinct edge materials met so far.
-struct Palette<'a> {
-    materials: &'a [Material],
-    entries: Vec<EdgeMaterial>,
-    by_value: HashMap<(u64, u64, Option<MaterialId>), u32>,
-    pure: Vec<Option<u32>>,
-    means: HashMap<[MaterialId; 4], u32>,
-}
-
-impl<'a> Palette<'a> {
-    fn new(materials: &'a [Material]) -> Self {
-        let pure = vec![None; materials.len()];
-        Self { materials, entries: vec![], by_value: HashMap::new(), pure, means: HashMap::new() }
-    }
-
-    fn pure(&mut self, id: MaterialId) -> u32 {
-        if let Some(entry) = self.pure[id.index()] {
-            return entry;
-        }
-        let material = &self.materials[id.index()];
-        let dispersive = material.is_dispersive().then_some(id);
-        let entry = self.enter(EdgeMaterial { eps_r: material.eps_r, sigma: material.sigma, dispersive });
-        self.pure[id.index()] = Some(entry);
-        entry
-    }
-
-    /// The arithmetic mean; `ids` are sorted first, so that the sum has the same bits however the cells lie.
-    fn mean(&mut self, mut ids: [MaterialId; 4]) -> u32 {
-        ids.sort_unstable();
-        if let Some(&entry) = self.means.get(&ids) {
-            return entry;
-        }
-        let of =
-            |value: fn(&Material) -> f64| ids.iter().map(|id| value(&self.materials[id.index()])).sum::<f64>() / 4.0;
-        let mean = EdgeMaterial { eps_r: of(|m| m.eps_r), sigma: of(|m| m.sigma), dispersive: None };
-        let entry = self.enter(mean);
-        self.means.insert(ids, entry);
-        entry
-    }
-
-    fn enter(&mut self, edge: EdgeMaterial) -> u32 {
-        let entries = &mut self.entries;
-        *self.by_value.entry((edge.eps_r.to_bits(), edge.sigma.to_bits(), edge.dispersive)).or_insert_with(|| {
-            entries.push(edge);
-            entries.len() as u32 - 1
-        })
+        Painted { cells_xy: [nx, ny], solid: self.solid, palette: palette.into_entries(), edge_z, averaged_edges }
     }
 }
 

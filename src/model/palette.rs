@@ -1,0 +1,71 @@
+//! The distinct materials on the edges of a grid.
+
+use std::collections::HashMap;
+
+use super::{Material, MaterialId};
+
+/// What lies on one edge of the grid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EdgeMaterial {
+    /// Relative permittivity at infinite frequency.
+    pub eps_r: f64,
+    /// Conductivity, S/m; infinite on a perfect conductor.
+    pub sigma: f64,
+    /// The one material whose poles act on this edge, if it is dispersive.
+    pub dispersive: Option<MaterialId>,
+}
+
+/// The distinct edge materials met so far.
+pub(super) struct Palette<'a> {
+    materials: &'a [Material],
+    entries: Vec<EdgeMaterial>,
+    by_value: HashMap<(u64, u64, Option<MaterialId>), u32>,
+    pure: Vec<Option<u32>>,
+    means: HashMap<[MaterialId; 4], u32>,
+}
+
+impl<'a> Palette<'a> {
+    pub(super) fn new(materials: &'a [Material]) -> Self {
+        let pure = vec![None; materials.len()];
+        Self { materials, entries: vec![], by_value: HashMap::new(), pure, means: HashMap::new() }
+    }
+
+    /// The entry of one material.
+    pub(super) fn pure(&mut self, id: MaterialId) -> u32 {
+        if let Some(entry) = self.pure[id.index()] {
+            return entry;
+        }
+        let material = &self.materials[id.index()];
+        let dispersive = material.is_dispersive().then_some(id);
+        let entry = self.enter(EdgeMaterial { eps_r: material.eps_r, sigma: material.sigma, dispersive });
+        self.pure[id.index()] = Some(entry);
+        entry
+    }
+
+    /// The arithmetic mean; `ids` are sorted first, so that the sum has the same bits however the cells lie.
+    pub(super) fn mean(&mut self, mut ids: [MaterialId; 4]) -> u32 {
+        ids.sort_unstable();
+        if let Some(&entry) = self.means.get(&ids) {
+            return entry;
+        }
+        let of =
+            |value: fn(&Material) -> f64| ids.iter().map(|id| value(&self.materials[id.index()])).sum::<f64>() / 4.0;
+        let mean = EdgeMaterial { eps_r: of(|m| m.eps_r), sigma: of(|m| m.sigma), dispersive: None };
+        let entry = self.enter(mean);
+        self.means.insert(ids, entry);
+        entry
+    }
+
+    /// The entries, in the order in which they were met.
+    pub(super) fn into_entries(self) -> Vec<EdgeMaterial> {
+        self.entries
+    }
+
+    fn enter(&mut self, edge: EdgeMaterial) -> u32 {
+        let entries = &mut self.entries;
+        *self.by_value.entry((edge.eps_r.to_bits(), edge.sigma.to_bits(), edge.dispersive)).or_insert_with(|| {
+            entries.push(edge);
+            entries.len() as u32 - 1
+        })
+    }
+}
