@@ -57,11 +57,12 @@ impl<T: Real> Dispersion<T> {
         (!spans.is_empty()).then(|| Self { spans, memory: vec![T::default(); place], ez_old, materials })
     }
 
-    /// Keeps E of a row before its step, if the row holds dispersive nodes; `next` is the first run not yet done.
+    /// Keeps E of a row's dispersive nodes before its step; `ez` begins at node 1, `next` is the first run not yet done.
     #[inline(always)]
     pub fn keep(&mut self, r: usize, ez: &[T], next: usize) {
-        if self.spans.get(next).is_some_and(|span| span.row == r) {
-            self.ez_old[..ez.len()].copy_from_slice(ez);
+        for span in self.spans[next..].iter().take_while(|span| span.row == r) {
+            let nodes = span.j - 1..span.j - 1 + span.count;
+            self.ez_old[nodes.clone()].copy_from_slice(&ez[nodes]);
         }
     }
 
