@@ -1,1 +1,22 @@
 //! gprMax: its input files, its HDF5 files, and running it.
+//!
+//! - [`read_input`] turns an `.in` file into a [`Model`](crate::model::Model); [`write_input`] does the reverse.
+//! - [`read_traces`] and [`write_traces`] speak gprMax's output files.
+//! - [`install`](mod@install) finds or installs gprMax, [`GprMax`] runs it as a separate process.
+//!
+//! Nothing of gprMax is copied or linked: its formats and rules are facts, its program is called.
+
+mod geometry;
+pub mod hdf5;
+pub mod install;
+mod output;
+mod program;
+mod reader;
+mod writer;
+
+pub use geometry::GeometryError;
+pub use install::{InstallError, Interpreter, VersionInfo};
+pub use output::{OutputError, OutputWriteError, read_traces, traces_to_bytes, write_traces};
+pub use program::{GprMax, GprMaxRun, RunError};
+pub use reader::{COMMANDS, CommandKind, InFileError, Input, Note, Problem, read_input, read_model};
+pub use writer::{DEFAULT_TEMPLATE, InputOptions, WriteError, number, write_input};

@@ -1,0 +1,197 @@
+//! From an input file to traces.
+
+use std::collections::VecDeque;
+use std::fs;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Instant;
+
+use super::super::install::Interpreter;
+use super::super::output::read_traces;
+use super::super::writer::{InputOptions, write_input};
+use super::error::RunError;
+use super::process::{Event, run};
+use super::progress::{loop_seconds, progress};
+use crate::files::FileError;
+use crate::forward::{Forward, ForwardError, OnProgress, Progress};
+use crate::model::Model;
+use crate::trace::Traces;
+
+/// Lines of gprMax's own output that an error shows.
+const SHOWN_LINES: usize = 40;
+
+/// gprMax as a solver.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct GprMax {
+    /// A Python that has gprMax.
+    pub python: Interpreter,
+    /// Threads; gprMax's own choice (one per physical core) where `None`. `#omp_threads` in a file goes before it.
+    pub threads: Option<usize>,
+    /// Whether to compute in double precision.
+    pub double_precision: bool,
+}
+
+/// What a run of gprMax gave.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GprMaxRun {
+    /// The traces.
+    pub traces: Traces,
+    /// Wall time from the start of the process to its end, s. About 1.5 s of it is the start of Python.
+    pub wall_seconds: f64,
+    /// Time of the loop over time steps as gprMax prints it, s.
+    pub loop_seconds: Option<f64>,
+}
+
+impl GprMax {
+    /// Runs an input file and writes gprMax's output to `output`.
+    ///
+    /// The output is computed under another name beside its place and renamed at the end: a run that fails or is stopped
+    /// leaves nothing but, when it fails, a log `<output>.log`. Where the file has an `#output_dir`, gprMax also leaves its
+    /// output there.
+    ///
+    /// Threads: `OMP_NUM_THREADS` is set to `threads`. With fewer threads than cores their binding to cores is switched off:
+    /// bound, the threads of runs side by side all land on the same first cores.
+    ///
+    /// # Errors
+    /// See [`RunError`]; what gprMax said is shown.
+    pub fn run_file(&self, input: &Path, output: &Path, on_progress: OnProgress<'_>) -> Result<GprMaxRun, RunError> {
+        let folder = output.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let scratch = tempfile::Builder::new()
+            .prefix(".gprmax-")
+            .suffix(".partial")
+            .tempdir_in(folder)
+            .map_err(FileError::of("write a folder in", folder))?;
+        let place = fs::canonicalize(scratch.path()).map_err(FileError::of("read", scratch.path()))?;
+        let (partial, partial_log) = (place.join("out.h5"), place.join("log"));
+        let mut log = fs::File::create(&partial_log).map_err(FileError::of("write", &partial_log))?;
+        let mut command = self.command(input, &partial);
+        let (mut last_lines, mut loop_time) = (VecDeque::new(), None);
+        let mut elsewhere = Elsewhere::default();
+        let start = Instant::now();
+        let mut log_failure = None;
+        let status = run(&mut command, |event| {
+            let Event::Line(line) = event else {
+                return on_progress(last_progress(&last_lines)).is_continue();
+            };
+            loop_time = loop_seconds(line).or(loop_time);
+            elsewhere.read(line);
+            if let Err(error) = writeln!(log, "{line}") {
+                log_failure = Some(error);
+            }
+            if last_lines.len() == SHOWN_LINES {
+                last_lines.pop_front();
+            }
+            last_lines.push_back(line.to_owned());
+            match progress(line) {
+                Some(progress) => on_progress(progress).is_continue(),
+                None => true,
+            }
+        })?;
+        let wall_seconds = start.elapsed().as_secs_f64();
+        if let Some(error) = log_failure {
+            return Err(FileError { action: "write", path: partial_log, source: error }.into());
+        }
+        let keep_log = || -> Result<PathBuf, RunError> {
+            let kept = log_path(output);
+            fs::rename(&partial_log, &kept).map_err(FileError::of("write", &kept))?;
+            Ok(kept)
+        };
+        if !status.success() {
+            let last_lines = last_lines.into_iter().filter(|line| !line.trim().is_empty()).collect();
+            let (input, status) = (input.into(), status.to_string());
+            return Err(RunError::Failed { input, status, last_lines, log: keep_log()? });
+        }
+        if let Some(written) = elsewhere.path().filter(|path| !partial.is_file() && path.is_file()) {
+            fs::copy(&written, &partial).map_err(FileError::of("read", &written))?;
+        }
+        if !partial.is_file() {
+            return Err(RunError::NoOutput { input: input.into(), log: keep_log()? });
+        }
+        let traces = read_traces(&partial)?;
+        fs::rename(&partial, output).map_err(FileError::of("write", output))?;
+        Ok(GprMaxRun { traces, wall_seconds, loop_seconds: loop_time })
+    }
+
+    /// Writes a model into a folder that is removed afterwards, and runs it.
+    ///
+    /// # Errors
+    /// See [`RunError`].
+    pub fn run_model(&self, model: &Model, on_progress: OnProgress<'_>) -> Result<GprMaxRun, RunError> {
+        let place = std::env::temp_dir();
+        let folder = tempfile::Builder::new()
+            .prefix("ballast-gpr-")
+            .tempdir()
+            .map_err(FileError::of("write a folder in", &place))?;
+        write_input(model, folder.path(), "model", &InputOptions::default())?;
+        let result = self.run_file(&folder.path().join("model.in"), &folder.path().join("out.h5"), on_progress);
+        if matches!(result, Err(RunError::Failed { .. } | RunError::NoOutput { .. })) {
+            // The error names files in the folder: leave them for whoever reads it.
+            let _ = folder.keep();
+        }
+        result
+    }
+
+    fn command(&self, input: &Path, output: &Path) -> Command {
+        let mut command = Command::new(&self.python.python);
+        command.args(["-m", "gprMax"]).arg(input).arg("-o").arg(output).arg("--show-progress-bars");
+        if self.double_precision {
+            command.args(["-cpu_precision", "double"]);
+        }
+        command.env("PYTHONUNBUFFERED", "1");
+        if let Some(threads) = self.threads {
+            let cores = std::thread::available_parallelism().map_or(1, usize::from);
+            command.env("OMP_NUM_THREADS", threads.max(1).to_string());
+            if threads < cores {
+                command.env("OMP_PROC_BIND", "FALSE").env_remove("OMP_PLACES").env_remove("GOMP_CPU_AFFINITY");
+            }
+        }
+        command
+    }
+}
+
+impl Forward for GprMax {
+    fn name(&self) -> &'static str {
+        "gprmax"
+    }
+
+    fn solve(&self, model: &Model, on_progress: OnProgress<'_>) -> Result<Traces, ForwardError> {
+        match self.run_model(model, on_progress) {
+            Ok(run) => Ok(run.traces),
+            Err(RunError::Stopped) => Err(ForwardError::Stopped),
+            Err(error @ RunError::Write(_)) => Err(ForwardError::Model(Box::new(error))),
+            Err(error) => Err(ForwardError::Solver(Box::new(error))),
+        }
+    }
+}
+
+/// The newest progress among the last lines; nothing of one step before the bar appears.
+fn last_progress(lines: &VecDeque<String>) -> Progress {
+    lines.iter().rev().find_map(|line| progress(line)).unwrap_or(Progress { done: 0, total: 1 })
+}
+
+/// Where gprMax says it put its output: `#output_dir` in a file goes before the name given on its command line.
+#[derive(Default)]
+struct Elsewhere {
+    folder: Option<PathBuf>,
+    name: Option<PathBuf>,
+}
+
+impl Elsewhere {
+    fn read(&mut self, line: &str) {
+        let after = |words: &str| line.strip_prefix(words).map(|rest| PathBuf::from(rest.trim()));
+        self.folder = after("Output directory:").or(self.folder.take());
+        self.name = after("Written output file:").or(self.name.take());
+    }
+
+    fn path(&self) -> Option<PathBuf> {
+        Some(self.folder.as_ref()?.join(self.name.as_ref()?))
+    }
+}
+
+/// `trace.h5` → `trace.h5.log`.
+fn log_path(output: &Path) -> PathBuf {
+    let mut name = output.as_os_str().to_owned();
+    name.push(".log");
+    name.into()
+}

@@ -1,0 +1,145 @@
+//! Every command that gprMax 4.0.1 knows, and what becomes of it here.
+
+/// What becomes of a command.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CommandKind {
+    /// Read into the model; may stand once.
+    Single,
+    /// Read into the model; may stand any number of times.
+    Multiple,
+    /// Does not change a trace: kept as a note that says so.
+    Noted(&'static str),
+    /// Only gprMax itself can do it.
+    GprMaxOnly,
+    /// gprMax 4 no longer has it; what to write instead.
+    Retired(&'static str),
+}
+
+use CommandKind::{GprMaxOnly, Multiple, Noted, Retired, Single};
+
+/// The commands of gprMax 4.0.1 without `#`, and those that older versions had.
+pub const COMMANDS: &[(&str, CommandKind)] = &[
+    ("domain", Single),
+    ("dx_dy_dz", Single),
+    ("time_window", Single),
+    ("title", Single),
+    ("omp_threads", Single),
+    ("num_threads", Single),
+    ("pml_cells", Single),
+    ("time_step_stability_factor", Single),
+    ("dispersive_averaging", Single),
+    ("material", Multiple),
+    ("add_dispersion_debye", Multiple),
+    ("waveform", Multiple),
+    ("hertzian_dipole", Multiple),
+    ("rx", Multiple),
+    ("box", Multiple),
+    ("cylinder", Multiple),
+    ("geometry_objects_read", Multiple),
+    ("output_dir", Noted("the output goes where the command line says")),
+    ("geometry_view", Noted("no geometry file is written")),
+    ("geometry_objects_write", Noted("no geometry file is written")),
+    ("snapshot", Noted("no snapshot is written")),
+    ("src_steps", Noted("one trace is computed, with the sources where the file puts them")),
+    ("rx_steps", Noted("one trace is computed, with the receivers where the file puts them")),
+    ("domain_mode", GprMaxOnly),
+    ("magnetic_averaging", GprMaxOnly),
+    ("study", GprMaxOnly),
+    ("array_codebook", GprMaxOnly),
+    ("add_dispersion_lorentz", GprMaxOnly),
+    ("add_dispersion_drude", GprMaxOnly),
+    ("excitation_file", GprMaxOnly),
+    ("magnetic_dipole", GprMaxOnly),
+    ("voltage_source", GprMaxOnly),
+    ("transmission_line", GprMaxOnly),
+    ("magnetic_frill_source", GprMaxOnly),
+    ("plane_wave_angles", GprMaxOnly),
+    ("plane_wave_axial", GprMaxOnly),
+    ("plane_wave_vector", GprMaxOnly),
+    ("rx_array", GprMaxOnly),
+    ("pml_formulation", GprMaxOnly),
+    ("pml_cfs", GprMaxOnly),
+    ("pml_slab", GprMaxOnly),
+    ("soil_peplinski", GprMaxOnly),
+    ("material_range", GprMaxOnly),
+    ("material_list", GprMaxOnly),
+    ("material_crim", GprMaxOnly),
+    ("material_from_database", GprMaxOnly),
+    ("material_density", GprMaxOnly),
+    ("include_file", GprMaxOnly),
+    ("python", GprMaxOnly),
+    ("end_python", GprMaxOnly),
+    ("symmetry_boundary", GprMaxOnly),
+    ("rational_network", GprMaxOnly),
+    ("surface_impedance", GprMaxOnly),
+    ("network_terminal", GprMaxOnly),
+    ("network_excitation", GprMaxOnly),
+    ("network_port", GprMaxOnly),
+    ("eigenmode_band", GprMaxOnly),
+    ("eigenmode_port", GprMaxOnly),
+    ("eigenmode_excitation", GprMaxOnly),
+    ("eigenmode_field_output", GprMaxOnly),
+    ("virtual_waveguide", GprMaxOnly),
+    ("sar", GprMaxOnly),
+    ("radiometry", GprMaxOnly),
+    ("ntff_surface", GprMaxOnly),
+    ("ntff_frequency", GprMaxOnly),
+    ("ntff_layered_background", GprMaxOnly),
+    ("ntff_layered_frequency", GprMaxOnly),
+    ("ntff_layered_time", GprMaxOnly),
+    ("ntff_layered_time_far_field", GprMaxOnly),
+    ("ntff_layered_time_far_field_array", GprMaxOnly),
+    ("ntff_far_field", GprMaxOnly),
+    ("ntff_far_field_array", GprMaxOnly),
+    ("ntff_time_far_field", GprMaxOnly),
+    ("ntff_time_far_field_array", GprMaxOnly),
+    ("ntff_antenna_ports", GprMaxOnly),
+    ("ksir_frequency", GprMaxOnly),
+    ("ksir_time_rx", GprMaxOnly),
+    ("ksir_time_rx_spherical", GprMaxOnly),
+    ("ksir_time_rx_array", GprMaxOnly),
+    ("ksir_frequency_rx", GprMaxOnly),
+    ("ksir_frequency_rx_spherical", GprMaxOnly),
+    ("ksir_frequency_rx_array", GprMaxOnly),
+    ("ksir_far_field", GprMaxOnly),
+    ("ksir_far_field_array", GprMaxOnly),
+    ("ksir_antenna_ports", GprMaxOnly),
+    ("sphere", GprMaxOnly),
+    ("triangle", GprMaxOnly),
+    ("ellipsoid", GprMaxOnly),
+    ("cone", GprMaxOnly),
+    ("cylindrical_sector", GprMaxOnly),
+    ("plate", GprMaxOnly),
+    ("edge", GprMaxOnly),
+    ("magnetic_edge", GprMaxOnly),
+    ("thin_wire", GprMaxOnly),
+    ("fractal_box", GprMaxOnly),
+    ("add_surface_roughness", GprMaxOnly),
+    ("add_surface_water", GprMaxOnly),
+    ("add_grass", GprMaxOnly),
+    ("rx_port", Retired("a voltage source of gprMax 4 records its port itself")),
+    ("messages", Retired("remove it: gprMax 4 takes `--log-level` on its command line instead")),
+    ("pml_properties", Retired("write `#pml_cells` and `#pml_formulation`")),
+    ("plane_voltage_source", Retired("gprMax 4 has no such command")),
+    ("discrete_plane_wave", Retired("write `#plane_wave_angles`, `#plane_wave_axial` or `#plane_wave_vector`")),
+    ("plane_wave", Retired("write `#plane_wave_angles`, `#plane_wave_axial` or `#plane_wave_vector`")),
+];
+
+/// Looks a command up.
+pub(super) fn kind_of(name: &str) -> Option<CommandKind> {
+    COMMANDS.iter().find(|(known, _)| *known == name).map(|(_, kind)| *kind)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// No command stands twice in the table.
+    #[test]
+    fn the_table_has_each_command_once() {
+        let mut names: Vec<_> = COMMANDS.iter().map(|(name, _)| *name).collect();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), COMMANDS.len());
+    }
+}

@@ -1,0 +1,220 @@
+//! What can be wrong with an input file.
+
+use std::path::PathBuf;
+
+use super::super::geometry::GeometryError;
+use crate::files::FileError;
+
+/// Why an input file was not read.
+#[derive(Debug, thiserror::Error)]
+pub enum InFileError {
+    /// The system refused.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A line is wrong.
+    #[error("`{}` line {line}: {problem}", path.display())]
+    Line {
+        /// The file.
+        path: PathBuf,
+        /// Line number, from 1.
+        line: usize,
+        /// What is wrong.
+        problem: Box<Problem>,
+    },
+    /// One of the three commands that every file needs is not there.
+    #[error("`{}` has no `#{command}`\n\nhint: write for example `{example}`", path.display())]
+    Missing {
+        /// The file.
+        path: PathBuf,
+        /// The command.
+        command: &'static str,
+        /// Something to write.
+        example: &'static str,
+    },
+    /// The default absorbing boundary does not fit into the domain.
+    #[error(
+        "`{}`: the default of {} absorbing cells on each side does not fit into {cells} cells along {axis}\n\nhint: write for example `#pml_cells: 5 5 0 5 5 0`, or enlarge the domain",
+        path.display(),
+        layer
+    )]
+    DefaultPml {
+        /// The file.
+        path: PathBuf,
+        /// `x`, `y` or `z`.
+        axis: &'static str,
+        /// Cells along it.
+        cells: usize,
+        /// Absorbing cells on each side.
+        layer: usize,
+    },
+}
+
+/// What is wrong with a line.
+#[derive(Debug, thiserror::Error)]
+pub enum Problem {
+    /// No colon behind the name.
+    #[error("a colon is missing behind the command in `{text}`\n\nhint: `#command: parameters`")]
+    NoColon {
+        /// The line.
+        text: String,
+    },
+    /// No space behind the colon.
+    #[error("a space is missing behind the colon of `#{command}:`")]
+    NoSpace {
+        /// The command.
+        command: String,
+    },
+    /// Nobody knows the command.
+    #[error("`#{command}` is not a gprMax command{}", nearest.map_or(String::new(), |name| format!("\n\nhint: did you mean `#{name}`?")))]
+    Unknown {
+        /// The command.
+        command: String,
+        /// The nearest known one.
+        nearest: Option<&'static str>,
+    },
+    /// gprMax knows the command, this program does not act on it.
+    #[error(
+        "`#{command}` is not supported by the embedded solver\n\nhint: `--solver gprmax` runs the file in gprMax itself"
+    )]
+    Unsupported {
+        /// The command.
+        command: String,
+    },
+    /// gprMax no longer knows the command.
+    #[error("`#{command}` is not a command of gprMax 4\n\nhint: {instead}")]
+    Retired {
+        /// The command.
+        command: String,
+        /// What to do.
+        instead: &'static str,
+    },
+    /// A form of a supported command that is not supported.
+    #[error(
+        "{what} of `#{command}` is not supported by the embedded solver\n\nhint: `--solver gprmax` runs the file in gprMax itself"
+    )]
+    UnsupportedForm {
+        /// The command.
+        command: String,
+        /// The form.
+        what: &'static str,
+    },
+    /// A command that may stand once stands twice.
+    #[error("`#{command}` stands for the second time, first in line {first}")]
+    Duplicate {
+        /// The command.
+        command: String,
+        /// Line of the first.
+        first: usize,
+    },
+    /// Wrong number of parameters.
+    #[error("`#{command}` has {found} parameters\n\nhint: `#{command}: {form}`")]
+    Parameters {
+        /// The command.
+        command: String,
+        /// How many stand there.
+        found: usize,
+        /// How it is written.
+        form: &'static str,
+    },
+    /// Something that should be a number is not.
+    #[error("`{text}` is not a number: `#{command}` wants {what} there")]
+    NotANumber {
+        /// The command.
+        command: String,
+        /// What stands there.
+        text: String,
+        /// What should.
+        what: &'static str,
+    },
+    /// A number outside its range.
+    #[error("{what} of `#{command}` is {value}, it should be {limit}")]
+    OutOfRange {
+        /// The command.
+        command: String,
+        /// What the number means.
+        what: &'static str,
+        /// The number.
+        value: f64,
+        /// What is allowed.
+        limit: &'static str,
+    },
+    /// A word that is not one of those allowed.
+    #[error("`{text}` is not {what}, which `#{command}` wants there: one of {known}")]
+    Word {
+        /// The command.
+        command: String,
+        /// What stands there.
+        text: String,
+        /// What it should be.
+        what: &'static str,
+        /// The words allowed.
+        known: String,
+    },
+    /// A material or waveform that is not defined.
+    #[error("the {what} `{id}` is not defined{}", nearest.as_ref().map_or(String::new(), |name| format!("\n\nhint: did you mean `{name}`?")))]
+    Undefined {
+        /// `material` or `waveform`.
+        what: &'static str,
+        /// The identifier.
+        id: String,
+        /// The nearest one that is.
+        nearest: Option<String>,
+    },
+    /// A material or waveform that is defined already.
+    #[error("the {what} `{id}` is defined already")]
+    DefinedTwice {
+        /// `material` or `waveform`.
+        what: &'static str,
+        /// The identifier.
+        id: String,
+    },
+    /// Too many cells to be meant.
+    #[error("a domain of {} x {} x {} cells ({total:.1e} in all) is beyond the limit of {limit:.1e} cells\n\nhint: `#domain` and `#dx_dy_dz` are in metres", cells[0], cells[1], cells[2])]
+    TooManyCells {
+        /// Cells along x, y, z.
+        cells: [f64; 3],
+        /// Their product.
+        total: f64,
+        /// The most that is taken.
+        limit: f64,
+    },
+    /// The absorbing boundary does not fit.
+    #[error("{below} + {above} absorbing cells do not fit into the {cells} along {axis}{}", if *cells == 1 { "\n\nhint: a two-dimensional model needs six values, for example `#pml_cells: 10 10 0 10 10 0`" } else { "" })]
+    PmlTooThick {
+        /// `x`, `y` or `z`.
+        axis: &'static str,
+        /// Cells at the lower side.
+        below: usize,
+        /// Cells at the upper side.
+        above: usize,
+        /// Cells along the axis.
+        cells: usize,
+    },
+    /// A position outside the domain.
+    #[error("the {what} at {x} {y} {z} m lies outside the domain of {} x {} x {} m", domain[0], domain[1], domain[2])]
+    Outside {
+        /// `source` or `receiver`.
+        what: &'static str,
+        /// Position, m.
+        x: f64,
+        /// Position, m.
+        y: f64,
+        /// Position, m.
+        z: f64,
+        /// Extents, m.
+        domain: [f64; 3],
+    },
+    /// A box whose lower corner is above its upper one.
+    #[error("the lower corner of `#box` is not below its upper corner along {axis}: {lower} m and {upper} m")]
+    Corners {
+        /// `x`, `y` or `z`.
+        axis: &'static str,
+        /// Lower coordinate, m.
+        lower: f64,
+        /// Upper coordinate, m.
+        upper: f64,
+    },
+    /// The file of a `#geometry_objects_read` is wrong.
+    #[error(transparent)]
+    Geometry(#[from] GeometryError),
+}

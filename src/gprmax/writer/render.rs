@@ -1,0 +1,277 @@
+//! From a model to the text of an input file.
+
+use std::path::{Path, PathBuf};
+
+use minijinja::value::Serde;
+use minijinja::{AutoEscape, Environment, UndefinedBehavior};
+use serde::Serialize;
+
+use super::error::WriteError;
+use super::number::{exponent, number};
+use super::voxel_files::VoxelFiles;
+use crate::files::write_bytes;
+use crate::model::{Material, MaterialId, Model, Object, Source, TimeWindow};
+
+/// The template that is built in.
+pub const DEFAULT_TEMPLATE: &str = include_str!("../../../templates/model.in");
+
+/// How to write an input file.
+#[derive(Debug, Clone, Default)]
+pub struct InputOptions {
+    /// Name and text of a template to use instead of [`DEFAULT_TEMPLATE`].
+    pub template: Option<(String, String)>,
+}
+
+/// What a template sees. Every field is always present; an empty text or list stands for "not given".
+#[derive(Debug, Serialize)]
+struct Page {
+    generator: &'static str,
+    title: String,
+    domain: [String; 3],
+    spacing: [String; 3],
+    cells: [usize; 3],
+    time_window: String,
+    time_step: String,
+    iterations: usize,
+    stability_factor: String,
+    pml_cells: Vec<usize>,
+    threads: String,
+    materials: Vec<MaterialLine>,
+    waveforms: Vec<WaveformLine>,
+    sources: Vec<SourceLine>,
+    receivers: Vec<ReceiverLine>,
+    /// `#box`, `#cylinder` and `#geometry_objects_read` lines, in the order of painting.
+    objects: Vec<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct MaterialLine {
+    id: String,
+    eps_r: String,
+    sigma: String,
+    mu_r: String,
+    sigma_magnetic: String,
+    poles: Vec<PoleLine>,
+}
+
+#[derive(Debug, Serialize)]
+struct PoleLine {
+    delta_eps: String,
+    tau: String,
+}
+
+#[derive(Debug, Serialize)]
+struct WaveformLine {
+    kind: &'static str,
+    amplitude: String,
+    frequency: String,
+    id: String,
+}
+
+#[derive(Debug, Serialize)]
+struct SourceLine {
+    polarisation: &'static str,
+    position: [String; 3],
+    waveform: String,
+    start: String,
+    stop: String,
+}
+
+#[derive(Debug, Serialize)]
+struct ReceiverLine {
+    position: [String; 3],
+    name: String,
+}
+
+/// Writes a model as `<stem>.in`, with `<stem>_geometry.h5` and `<stem>_materials.json` where it holds voxels.
+///
+/// Returns the files written, the `.in` file first. Materials that only voxels use stand in the database, all others in the
+/// `.in` file. Blocks of voxels that change nothing are left out. Characters of `stem` that gprMax's commands cannot name
+/// become `_` in the names of the geometry files.
+///
+/// # Errors
+/// See [`WriteError`]. Nothing is left half-written.
+pub fn write_input(
+    model: &Model,
+    folder: &Path,
+    stem: &str,
+    options: &InputOptions,
+) -> Result<Vec<PathBuf>, WriteError> {
+    check(model)?;
+    let voxels = VoxelFiles::of(model, stem)?;
+    let text = fill_in(&page(model, &voxels)?, options)?;
+    let path = folder.join(format!("{stem}.in"));
+    let mut written = vec![path.clone()];
+    written.extend(voxels.write(folder)?);
+    write_bytes(&path, text.as_bytes())?;
+    Ok(written)
+}
+
+fn fill_in(page: &Page, options: &InputOptions) -> Result<String, WriteError> {
+    let (name, source) = match &options.template {
+        Some((name, text)) => (name.as_str(), text.as_str()),
+        None => ("model.in", DEFAULT_TEMPLATE),
+    };
+    let mut environment = Environment::new();
+    environment.set_undefined_behavior(UndefinedBehavior::Strict);
+    environment.set_auto_escape_callback(|_| AutoEscape::None);
+    let rendered = environment.render_named_str(name, source, Serde(page));
+    let mut text = rendered.map_err(|error| {
+        let reason = error.detail().map_or_else(|| error.to_string(), |detail| format!("{detail} ({})", error.kind()));
+        let line = error.line().map_or(String::new(), |line| format!("line {line}: "));
+        WriteError::Template { name: name.into(), reason: line + &reason }
+    })?;
+    text.truncate(text.trim_end().len());
+    Ok(text + "\n")
+}
+
+fn page(model: &Model, voxels: &VoxelFiles<'_>) -> Result<Page, WriteError> {
+    let grid = &model.grid;
+    let mut objects = vec![];
+    for (index, object) in model.objects.iter().enumerate() {
+        objects.extend(object_line(model, index, object, voxels)?);
+    }
+    Ok(Page {
+        generator: concat!("written by ballast-gpr ", env!("CARGO_PKG_VERSION")),
+        title: model.title.split_whitespace().collect::<Vec<_>>().join(" "),
+        domain: std::array::from_fn(|axis| number(grid.cells[axis] as f64 * grid.spacing[axis])),
+        spacing: grid.spacing.map(number),
+        cells: grid.cells,
+        time_window: match model.time_window {
+            TimeWindow::Seconds(seconds) => exponent(seconds),
+            TimeWindow::Iterations(count) => count.to_string(),
+        },
+        time_step: number(model.time_step()),
+        iterations: model.iterations(),
+        stability_factor: number(model.stability_factor),
+        pml_cells: model.pml_cells.map_or(vec![], Vec::from),
+        threads: model.threads.map_or(String::new(), |count| count.to_string()),
+        materials: materials(model, voxels),
+        waveforms: model
+            .waveforms
+            .iter()
+            .map(|w| WaveformLine {
+                kind: w.kind.name(),
+                amplitude: number(w.amplitude),
+                frequency: number(w.frequency),
+                id: w.id.clone(),
+            })
+            .collect(),
+        sources: sources(model)?,
+        receivers: model
+            .receivers
+            .iter()
+            .map(|r| ReceiverLine { position: r.position.map(number), name: r.name.clone().unwrap_or_default() })
+            .collect(),
+        objects,
+    })
+}
+
+fn materials(model: &Model, voxels: &VoxelFiles<'_>) -> Vec<MaterialLine> {
+    let line = |m: &Material| MaterialLine {
+        id: m.id.clone(),
+        eps_r: number(m.eps_r),
+        sigma: number(m.sigma),
+        mu_r: number(m.mu_r),
+        sigma_magnetic: number(m.sigma_magnetic),
+        poles: m.poles.iter().map(|p| PoleLine { delta_eps: number(p.delta_eps), tau: number(p.tau) }).collect(),
+    };
+    let listed = |index: usize| index > MaterialId::FREE_SPACE.index() && !voxels.only_in_voxels(index);
+    model.materials.iter().enumerate().filter(|(index, _)| listed(*index)).map(|(_, m)| line(m)).collect()
+}
+
+fn sources(model: &Model) -> Result<Vec<SourceLine>, WriteError> {
+    let line = |source: &Source| {
+        let Source::HertzianDipole(dipole) = source;
+        let waveform = model
+            .waveforms
+            .get(dipole.waveform)
+            .ok_or(WriteError::Dangling { what: "waveform", index: dipole.waveform })?;
+        // gprMax knows a start only together with a stop; a stop at the end of the window changes nothing.
+        let end = match model.time_window {
+            TimeWindow::Seconds(seconds) => seconds,
+            TimeWindow::Iterations(count) => count as f64 * model.time_step(),
+        };
+        let timed = dipole.excitation.start != 0.0 || dipole.excitation.stop.is_some();
+        let text = |value: f64| if timed { number(value) } else { String::new() };
+        Ok(SourceLine {
+            polarisation: dipole.polarisation.name(),
+            position: dipole.position.map(number),
+            waveform: waveform.id.clone(),
+            start: text(dipole.excitation.start),
+            stop: text(dipole.excitation.stop.unwrap_or(end)),
+        })
+    };
+    model.sources.iter().map(line).collect()
+}
+
+fn object_line(
+    model: &Model,
+    index: usize,
+    object: &Object,
+    voxels: &VoxelFiles<'_>,
+) -> Result<Option<String>, WriteError> {
+    let point = |p: &[f64; 3]| p.map(number).join(" ");
+    let stuff = |id: &MaterialId, averaging: bool| {
+        let dangling = WriteError::Dangling { what: "material", index: id.index() };
+        let material = model.materials.get(id.index()).ok_or(dangling)?;
+        // `#material` has no word for "not averaged"; the object's own flag says the same.
+        let flag =
+            if averaging && (material.averagable || material.is_pec() || material.is_dispersive()) { "y" } else { "n" };
+        Ok::<_, WriteError>(format!("{} {flag}", material.id))
+    };
+    match object {
+        Object::Box { lower, upper, material, averaging } => {
+            Ok(Some(format!("#box: {} {} {}", point(lower), point(upper), stuff(material, *averaging)?)))
+        }
+        Object::Cylinder { start, end, radius, material, averaging } => {
+            let stuff = stuff(material, *averaging)?;
+            Ok(Some(format!("#cylinder: {} {} {} {stuff}", point(start), point(end), number(*radius))))
+        }
+        Object::Voxels(block) => Ok(voxels.line(index, block)),
+    }
+}
+
+/// Refuses what gprMax would refuse, with the name of the thing.
+fn check(model: &Model) -> Result<(), WriteError> {
+    let named = |what: &'static str, id: &str, extra: &[char]| {
+        let bad = id.is_empty() || id.contains(char::is_whitespace) || id.contains(extra);
+        if bad { Err(WriteError::Identifier { what, id: id.into() }) } else { Ok(()) }
+    };
+    for material in model.materials.iter().skip(2) {
+        named("material", &material.id, &['+'])?;
+        let value = |what: &str, value: f64, allowed: bool, limit: &'static str| {
+            let what = format!("the {what} of `{}`", material.id);
+            if allowed { Ok(()) } else { Err(WriteError::Value { what, value, limit }) }
+        };
+        value(
+            "relative permittivity",
+            material.eps_r,
+            (1.0..f64::INFINITY).contains(&material.eps_r),
+            "finite and at least 1",
+        )?;
+        value(
+            "relative permeability",
+            material.mu_r,
+            (1.0..f64::INFINITY).contains(&material.mu_r),
+            "finite and at least 1",
+        )?;
+        value("conductivity", material.sigma, material.sigma >= 0.0, "0 or more")?;
+        value("magnetic loss", material.sigma_magnetic, material.sigma_magnetic >= 0.0, "0 or more")?;
+        for pole in &material.poles {
+            value(
+                "change of permittivity",
+                pole.delta_eps,
+                (0.0..f64::INFINITY).contains(&pole.delta_eps),
+                "finite and 0 or more",
+            )?;
+            value("relaxation time", pole.tau, pole.tau > 0.0 && pole.tau.is_finite(), "finite and above 0")?;
+        }
+    }
+    model.waveforms.iter().try_for_each(|waveform| named("waveform", &waveform.id, &[]))?;
+    model
+        .receivers
+        .iter()
+        .filter_map(|receiver| receiver.name.as_ref())
+        .try_for_each(|name| named("receiver", name, &[]))
+}
