@@ -41,7 +41,12 @@ impl H5File {
         }
         let bytes = content.len() as u64;
         let file = guarded(path, || File::from_bytes(content))?;
-        Ok(Self { path: path.into(), bytes, file })
+        let recorded = file.superblock().eof_address;
+        let file = Self { path: path.into(), bytes, file };
+        if recorded > bytes {
+            return Err(file.damaged(format!("it should be {recorded} bytes long but is {bytes}")));
+        }
+        Ok(file)
     }
 
     /// The file.

@@ -117,9 +117,13 @@ fn fill_in(page: &Page, options: &InputOptions) -> Result<String, WriteError> {
     environment.set_auto_escape_callback(|_| AutoEscape::None);
     let rendered = environment.render_named_str(name, source, Serde(page));
     let mut text = rendered.map_err(|error| {
-        let reason = error.detail().map_or_else(|| error.to_string(), |detail| format!("{detail} ({})", error.kind()));
-        let line = error.line().map_or(String::new(), |line| format!("line {line}: "));
-        WriteError::Template { name: name.into(), reason: line + &reason }
+        let what =
+            error.detail().map_or_else(|| error.kind().to_string(), |detail| format!("{}: {detail}", error.kind()));
+        let place = error.line().map_or(String::new(), |line| {
+            let text = source.lines().nth(line - 1).unwrap_or("");
+            format!(" in line {line}: {}", text.trim())
+        });
+        WriteError::Template { name: name.into(), reason: what + &place }
     })?;
     text.truncate(text.trim_end().len());
     Ok(text + "\n")

@@ -1,0 +1,293 @@
+//! Reading input files.
+
+use std::path::Path;
+
+use ballast_gpr::gprmax::{COMMANDS, CommandKind, Input, read_input, read_model};
+use ballast_gpr::model::{Axis, DebyePole, MaterialId, Object, Source, TimeWindow, WaveformKind};
+use proptest::prelude::*;
+
+use crate::common::reference_case;
+
+const HEAD: &str = "#domain: 0.4 0.3 0.002\n#dx_dy_dz: 0.002 0.002 0.002\n#time_window: 4e-9\n";
+
+fn read(text: &str) -> Result<Input, String> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.in");
+    std::fs::write(&path, text).unwrap();
+    let shown = format!("`{}`", path.display());
+    read_input(&path).map_err(|error| error.to_string().replace(&shown, "FILE"))
+}
+
+/// The error about one line behind a good head.
+fn error(line: &str) -> String {
+    read(&format!("{HEAD}{line}\n")).unwrap_err()
+}
+
+/// Cell counts and iterations that gprMax 4.0.1 itself records in its output of the same scene.
+#[test]
+fn grids_and_steps_of_the_reference_cases_are_those_of_gprmax() {
+    for case in [
+        "01_fs_dipole_2d",
+        "03_halfspace_2d",
+        "05_cylinder_2d",
+        "06_ballast_air_300",
+        "08_conductive_layer",
+        "09_debye_water_layer",
+        "11_geometry_objects_read",
+        "11b_geometry_objects_read_noavg",
+        "14a_avg_on",
+        "14b_avg_off",
+        "16_noncubic",
+    ] {
+        let folder = reference_case(case);
+        let input = read_input(&folder.join("scene.in")).unwrap();
+        assert_eq!(input.notes, [], "{case}");
+        let recorded = ballast_gpr::gprmax::read_traces(&folder.join("out_f64.h5")).unwrap();
+        assert_eq!(input.model.grid.cells, recorded.cells, "{case}");
+        assert_eq!(input.model.time_step(), recorded.time_step.si(), "{case}");
+        assert_eq!(input.model.iterations(), recorded.iterations, "{case}");
+        assert_eq!(input.model.receivers.len(), recorded.receivers.len(), "{case}");
+        assert_eq!(input.model.title, recorded.title, "{case}");
+    }
+}
+
+#[test]
+fn every_supported_command_lands_in_the_model() {
+    let text = "## a scene\n\
+        #title: sleepers: two\n#domain: 0.4 0.3 0.004\n#dx_dy_dz: 0.002 0.003 0.004\n#time_window: 300\n\
+        #num_threads: 2\n#pml_cells: 8 9 0 10 11 0\n#time_step_stability_factor: 0.5\n\
+        #box: 0 0 0 0.4 0.1 0.004 wet n\n#cylinder: 0.1013 0.2 0 0.1013 0.2 0.004 0.03 pec\n\
+        #cylinder: 0.2 0.2 0 0.2 0.2 0.004 0.03 stone y left\n\
+        #material: 6 0.001 1 0 stone\n#material: 3.5 0.02 1 0.5 wet\n#material: 1 inf 1 0 rail\n\
+        #add_dispersion_debye: 2 6 9.23e-12 1.5 1e-10 wet\n\
+        #hertzian_dipole: z 0.1 0.15 0 pulse 1e-10 2e-9\n#waveform: gaussiandotnorm 2 1.5e9 pulse\n\
+        #rx: 0.2 0.15 0\n#rx: 0.3 0.15 0 right Ez\n\
+        #geometry_view: 0 0 0 1 1 1 1 1 1 view n\n #box: 0 0 0 1 1 1 stone\n#rx_steps: 0.02 0 0\n";
+    let Input { model, notes } = read(text).unwrap();
+    assert_eq!(model.title, "sleepers: two");
+    assert_eq!((model.grid.cells, model.grid.spacing), ([200, 100, 1], [0.002, 0.003, 0.004]));
+    assert_eq!(model.time_window, TimeWindow::Iterations(300));
+    assert_eq!((model.threads, model.stability_factor), (Some(2), 0.5));
+    assert_eq!(model.pml_cells, Some([8, 9, 0, 10, 11, 0]));
+    let ids: Vec<_> = model.materials.iter().map(|m| m.id.as_str()).collect();
+    assert_eq!(ids, ["pec", "free_space", "stone", "wet", "rail"]);
+    assert_eq!(
+        model.materials[3].poles,
+        [(6.0, 9.23e-12), (1.5, 1e-10)].map(|(delta_eps, tau)| DebyePole { delta_eps, tau })
+    );
+    assert!(model.materials[2].averagable && !model.materials[3].averagable && model.materials[4].is_pec());
+    assert_eq!(model.waveforms[0].kind, WaveformKind::GaussianDotNorm);
+    let Source::HertzianDipole(dipole) = &model.sources[0];
+    assert_eq!((dipole.polarisation, dipole.excitation.start, dipole.excitation.stop), (Axis::Z, 1e-10, Some(2e-9)));
+    assert_eq!(model.receivers[1].name.as_deref(), Some("right"));
+    // Objects keep the user's coordinates, in file order, whatever stands between them.
+    assert_eq!(model.objects.len(), 3);
+    assert!(matches!(model.objects[0], Object::Box { averaging: false, material: MaterialId(3), .. }));
+    assert!(matches!(
+        model.objects[1],
+        Object::Cylinder { start: [0.1013, 0.2, 0.0], averaging: true, material: MaterialId::PEC, .. }
+    ));
+    assert!(matches!(model.objects[2], Object::Cylinder { averaging: true, material: MaterialId(2), .. }));
+    let notes: Vec<_> = notes.iter().map(ToString::to_string).collect();
+    assert_eq!(
+        notes,
+        [
+            "line 19: `#rx` asks for Ez only: every component of the solver is given",
+            "line 20: `#geometry_view` is not acted upon: no geometry file is written",
+            "line 21: ignored, as gprMax does: a command must start in the first column",
+            "line 22: `#rx_steps` is not acted upon: one trace is computed, with the receivers where the file puts them",
+        ]
+    );
+}
+
+/// The voxels of case 11: -1 leaves a cell, 0 is stone, 1 is fines; counts by h5py.
+#[test]
+fn voxels_bring_their_materials() {
+    let model = read_model(&reference_case("11_geometry_objects_read").join("scene.in")).unwrap();
+    let [Object::Voxels(voxels)] = &model.objects[..] else { panic!("one block of voxels") };
+    assert_eq!((voxels.shape, voxels.averaging), ([300, 250, 1], true));
+    let ids: Vec<_> = model.materials.iter().map(|m| (m.id.as_str(), m.eps_r, m.sigma)).collect();
+    assert_eq!(ids[2..], [("stone", 6.0, 0.001), ("fines", 4.0, 0.005)]);
+    let count = |id: Option<MaterialId>| voxels.cells.iter().filter(|cell| **cell == id).count();
+    let counts = [count(None), count(Some(MaterialId(2))), count(Some(MaterialId(3)))];
+    assert_eq!(counts, [VOID_CELLS, STONE_CELLS, FINES_CELLS]);
+    let model = read_model(&reference_case("11b_geometry_objects_read_noavg").join("scene.in")).unwrap();
+    assert!(matches!(&model.objects[0], Object::Voxels(voxels) if !voxels.averaging));
+}
+const VOID_CELLS: usize = 31_500;
+const STONE_CELLS: usize = 13_472;
+const FINES_CELLS: usize = 30_028;
+
+#[test]
+fn errors_name_the_line_and_what_to_do() {
+    assert_eq!(
+        error("#cilinder: 1"),
+        "FILE line 4: `#cilinder` is not a gprMax command\n\nhint: did you mean `#cylinder`?"
+    );
+    assert_eq!(
+        error("#sphere: 0.1 0.1 0.1 0.05 stone"),
+        "FILE line 4: `#sphere` is not supported by the embedded solver\n\nhint: `--solver gprmax` runs the file in gprMax itself"
+    );
+    assert_eq!(error("#domain: 1 1 1"), "FILE line 4: `#domain` stands for the second time, first in line 1");
+    assert_eq!(
+        error("#pml_cells: 10"),
+        "FILE line 4: 10 + 10 absorbing cells do not fit into the 1 along z\n\nhint: a two-dimensional model needs six values, for example `#pml_cells: 10 10 0 10 10 0`"
+    );
+    assert_eq!(
+        error("#material: 6 0 1 0 stone\n#box: 0 0 0 0.4 0.1 0.002 stine"),
+        "FILE line 5: the material `stine` is not defined\n\nhint: did you mean `stone`?"
+    );
+    assert_eq!(
+        error("#material: 6 0 1 0 a\n#box: 0 0 0 0.4 0.1 0.002 a a a"),
+        "FILE line 5: a direction-dependent material (three identifiers) of `#box` is not supported by the embedded solver\n\nhint: `--solver gprmax` runs the file in gprMax itself"
+    );
+    assert_eq!(
+        error("#material: 0.5 0 1 0 a"),
+        "FILE line 4: the relative permittivity of `#material` is 0.5, it should be at least 1"
+    );
+    assert_eq!(
+        error("#material: nan 0 1 0 a"),
+        "FILE line 4: `nan` is not a number: `#material` wants a relative permittivity there"
+    );
+    assert_eq!(
+        error("#material: 6 0 1 0"),
+        "FILE line 4: `#material` has 4 parameters\n\nhint: `#material: EPS_R SIGMA MU_R SIGMA* ID`"
+    );
+    assert_eq!(error("#material: 6 0 1 0 pec"), "FILE line 4: the material `pec` is defined already");
+    assert_eq!(error("#hertzian_dipole: z 0.1 0.1 0 w"), "FILE line 4: the waveform `w` is not defined");
+    assert_eq!(
+        error("#rx: 0.1 0.5 0"),
+        "FILE line 4: the receiver at 0.1 0.5 0 m lies outside the domain of 0.4 x 0.3 x 0.002 m"
+    );
+    assert_eq!(
+        error("#rx: 0.1 0.1 0 name"),
+        "FILE line 4: `#rx` has 4 parameters\n\nhint: `#rx: X Y Z [NAME COMPONENT ...]`"
+    );
+    assert_eq!(
+        error("#waveform: sine 1 1e9 w"),
+        "FILE line 4: `sine` is not a waveform that the embedded solver knows, which `#waveform` wants there: one of ricker, gaussian, gaussiandot, gaussiandotnorm, gaussiandotdot, gaussiandotdotnorm"
+    );
+    assert_eq!(
+        error("#dispersive_averaging: y").lines().next(),
+        Some("FILE line 4: the flag `y` of `#dispersive_averaging` is not supported by the embedded solver")
+    );
+    assert_eq!(
+        error("#box: 0.2 0 0 0.1 0.1 0.002 pec"),
+        "FILE line 4: the lower corner of `#box` is not below its upper corner along x: 0.2 m and 0.1 m"
+    );
+    assert!(
+        error("#geometry_objects_read: 0 0 0 none.h5 mats").contains("none.h5"),
+        "{}",
+        error("#geometry_objects_read: 0 0 0 none.h5 mats")
+    );
+    assert!(error("#geometry_objects_read: 0 0 0 none.h5 mats.txt").contains("convert-geometry"));
+    assert_eq!(
+        read("#domain: 1 1 1\n#dx_dy_dz: 0.01 0.01 0.01\n").unwrap_err(),
+        "FILE has no `#time_window`\n\nhint: write for example `#time_window: 8e-9`"
+    );
+    assert_eq!(
+        read("#domain: 1e9 1e9 0.002\n#dx_dy_dz: 0.002 0.002 0.002\n#time_window: 1e-9").unwrap_err(),
+        "FILE line 1: a domain of 500000000000 x 500000000000 x 1 cells (2.5e23 in all) is beyond the limit of 4.3e9 cells\n\nhint: `#domain` and `#dx_dy_dz` are in metres"
+    );
+    assert!(
+        read("#domain: 0.4 0.03 0.002\n#dx_dy_dz: 0.002 0.002 0.002\n#time_window: 1e-9")
+            .unwrap_err()
+            .contains("default of 10 absorbing cells")
+    );
+    assert!(
+        read("#domain: 0.4 0.3 0.002\n#dx_dy_dz: 0.002 0.002 0.002\n#time_window: 1e9")
+            .unwrap_err()
+            .contains("at most 1e9")
+    );
+    assert!(read_model(Path::new("/nowhere/scene.in")).unwrap_err().to_string().contains("/nowhere/scene.in"));
+}
+
+/// A complete geometry file is authoritative for gprMax, so it is refused by name.
+#[test]
+fn finished_edges_are_refused() {
+    use ballast_gpr::gprmax::hdf5::{Attribute, Data, Dataset, Group, write};
+    let folder = tempfile::tempdir().unwrap();
+    let dataset = |name: &str, data| Dataset {
+        name: name.into(),
+        shape: vec![1, 1, 1],
+        data,
+        compressed: false,
+        attributes: vec![],
+    };
+    let keys = Dataset {
+        name: "material_keys".into(),
+        shape: vec![1],
+        data: Data::Texts(vec!["a".into()]),
+        compressed: false,
+        attributes: vec![],
+    };
+    let mut datasets: Vec<_> = ["data", "ID", "rigidE", "rigidH"].map(|name| dataset(name, Data::I16(vec![0]))).into();
+    datasets.push(keys);
+    let group =
+        Group { attributes: vec![("dx_dy_dz", Attribute::Floats(vec![0.002; 3]))], datasets, ..Group::default() };
+    write(&folder.path().join("g.h5"), &group).unwrap();
+    let path = folder.path().join("scene.in");
+    std::fs::write(&path, format!("{HEAD}#geometry_objects_read: 0 0 0 g.h5 mats\n")).unwrap();
+    let message = read_model(&path).unwrap_err().to_string();
+    assert!(
+        message.contains("holds `/ID`, `/rigidE` and `/rigidH`") && message.contains("--solver gprmax"),
+        "{message}"
+    );
+}
+
+fn any_line() -> impl Strategy<Value = String> {
+    let names: Vec<&'static str> = COMMANDS
+        .iter()
+        .filter(|(_, kind)| matches!(kind, CommandKind::Single | CommandKind::Multiple))
+        .map(|(name, _)| *name)
+        .collect();
+    let word = prop_oneof![
+        any::<f64>().prop_map(|v| format!("{v:e}")),
+        (-2i64..400).prop_map(|v| v.to_string()),
+        (0.0..0.5f64).prop_map(|v| format!("{v:.3}")),
+        Just("stone".to_owned()),
+        Just("pec".into()),
+        Just("w".into()),
+        Just("z".into()),
+        Just("y".into()),
+        Just("n".into()),
+        Just("ricker".into()),
+        Just("inf".into()),
+        Just("g.h5".into()),
+        "\\PC{0,6}",
+    ];
+    prop_oneof![
+        4 => (proptest::sample::select(names), prop::collection::vec(word, 0..12)).prop_map(|(name, words)| format!("#{name}: {}", words.join(" "))),
+        1 => "\\PC{0,30}",
+        1 => "#\\PC{0,20}",
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    /// Any lines behind a good head: an answer, never a panic.
+    #[test]
+    fn random_lines_never_panic(lines in prop::collection::vec(any_line(), 0..6), head in any::<bool>()) {
+        let head = if head { format!("{HEAD}#material: 6 0 1 0 stone\n#waveform: ricker 1 1e9 w\n") } else { String::new() };
+        let _ = read(&format!("{head}{}", lines.join("\n")));
+    }
+
+    /// Real files with bytes changed, taken out and put in: an answer, never a panic.
+    #[test]
+    fn mutated_files_never_panic(
+        case in proptest::sample::select(vec!["05_cylinder_2d", "09_debye_water_layer", "14a_avg_on", "16_noncubic"]),
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..3), 1..6),
+    ) {
+        let mut bytes = std::fs::read(reference_case(case).join("scene.in")).unwrap();
+        for (place, byte, kind) in changes {
+            let at = place.index(bytes.len());
+            match kind {
+                0 => bytes[at] = byte,
+                1 => { bytes.remove(at); }
+                _ => bytes.insert(at, byte),
+            }
+        }
+        let _ = read(&String::from_utf8_lossy(&bytes));
+    }
+}
