@@ -134,11 +134,11 @@ fn a_damaged_file_ends_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("damaged.h5");
     for content in samples() {
-        let step = (content.len() / 1500).max(1);
+        let step = (content.len() / 700).max(1);
         // The structure lies at the start and, in our own files, at the end: there every byte is tried.
         let dense = (0..content.len().min(800)).chain(content.len().saturating_sub(400)..content.len());
         for position in dense.chain((0..content.len()).step_by(step)) {
-            for mask in [0xff, 0x01, 0x80] {
+            for mask in [0xff, 0x01] {
                 let mut damaged = content.clone();
                 damaged[position] ^= mask;
                 std::fs::write(&path, &damaged).unwrap();

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::super::hdf5::{Attribute, Data, Dataset, Group, to_bytes};
 use super::error::OutputWriteError;
 use crate::files::write_bytes;
-use crate::model::{Axis, Model, Source};
+use crate::model::{Axis, Model, Source, TimeWindow};
 use crate::trace::{AScan, Component, ReceiverTraces, Traces};
 
 /// The version of gprMax whose layout is written.
@@ -139,7 +139,11 @@ fn source(traces: &Traces, model: &Model, index: usize) -> Result<Group, OutputW
     let (node, position) = on_grid(model, dipole.position);
     let time_step = traces.time_step.si();
     let start = dipole.excitation.start;
-    let stop = dipole.excitation.stop.unwrap_or(traces.iterations as f64 * time_step);
+    let end = match model.time_window {
+        TimeWindow::Seconds(seconds) => seconds,
+        TimeWindow::Iterations(count) => count.saturating_sub(1) as f64 * time_step,
+    };
+    let stop = dipole.excitation.stop.map_or(end, |stop| stop.min(end));
     // The current acts half a step late: on while start <= n dt <= stop, with the waveform at (n + 1/2) dt.
     let current = |step: usize| {
         let time = step as f64 * time_step;
