@@ -20,12 +20,20 @@ const COMPLETE: &str = "ballast-gpr-complete";
 /// # Errors
 /// See [`InstallError`]; what `pip` printed is given in full.
 pub fn install(on_line: &mut dyn FnMut(&str)) -> Result<Interpreter, InstallError> {
-    let cache = cache_folder()?;
-    create_folder(&cache)?;
+    install_in(&cache_folder()?, &python_to_install_with, on_line)
+}
+
+/// As [`install`], into a given cache folder; `base` is only asked for where there is something to install.
+fn install_in(
+    cache: &Path,
+    base: &dyn Fn() -> Result<PathBuf, InstallError>,
+    on_line: &mut dyn FnMut(&str),
+) -> Result<Interpreter, InstallError> {
+    create_folder(cache)?;
     let lock_path = cache.join("gprmax.lock");
     let lock = File::create(&lock_path).map_err(FileError::of("write", &lock_path))?;
     lock.lock().map_err(FileError::of("lock", &lock_path))?;
-    let folder = environment(&cache);
+    let folder = environment(cache);
     if let Some(interpreter) = complete(&folder) {
         return Ok(interpreter);
     }
@@ -33,7 +41,7 @@ pub fn install(on_line: &mut dyn FnMut(&str)) -> Result<Interpreter, InstallErro
         on_line(&format!("removing an unfinished installation in {}", folder.display()));
         fs::remove_dir_all(&folder).map_err(FileError::of("remove", &folder))?;
     }
-    let base = python_to_install_with()?;
+    let base = base()?;
     on_line(&format!("making an environment for gprMax {GPRMAX_VERSION} in {}", folder.display()));
     step(Command::new(&base).args(["-m", "venv"]).arg(&folder), on_line)?;
     let interpreter = Interpreter { python: python_in(&folder) };
@@ -132,9 +140,49 @@ fn step(command: &mut Command, on_line: &mut dyn FnMut(&str)) -> Result<(), Inst
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, unix))]
 mod tests {
     use super::*;
+    use std::os::unix::fs::PermissionsExt as _;
+
+    /// A Python in name: makes an "environment" by copying itself, "installs" slowly, and knows three versions.
+    fn pretender(folder: &Path) -> PathBuf {
+        let path = folder.join("python3");
+        let script = format!(
+            "#!/bin/sh\ncase \"$1 $2\" in\n\
+             '-m venv') mkdir -p \"$3/bin\" && cp \"$0\" \"$3/bin/python\" ;;\n\
+             '-m pip') sleep 0.3; echo \"$@\" >> '{}' ;;\n\
+             *) echo versions 3.11.7 4.0.1 3.16.0 ;;\nesac\n",
+            folder.join("installed").display()
+        );
+        fs::write(&path, script).unwrap();
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+        path
+    }
+
+    /// Four at once: one installs, the others wait and find it. What is unfinished is made again.
+    #[test]
+    fn an_environment_is_made_once_and_again_when_unfinished() {
+        let folder = tempfile::tempdir().unwrap();
+        let (python, cache) = (pretender(folder.path()), folder.path().join("cache"));
+        let base = || Ok(python.clone());
+        let made = || install_in(&cache, &base, &mut |_| ()).unwrap();
+        let all: Vec<_> = std::thread::scope(|scope| {
+            let threads: Vec<_> = (0..4).map(|_| scope.spawn(made)).collect();
+            threads.into_iter().map(|thread| thread.join().unwrap()).collect()
+        });
+        let wanted = Interpreter { python: python_in(&environment(&cache)) };
+        assert!(all.iter().all(|interpreter| *interpreter == wanted));
+        let installed = || fs::read_to_string(folder.path().join("installed")).unwrap();
+        assert_eq!(installed().lines().count(), 1);
+        assert!(installed().ends_with("gprMax==4.0.1 h5py==3.16.0\n"), "{}", installed());
+
+        fs::remove_file(environment(&cache).join(COMPLETE)).unwrap();
+        let mut lines = vec![];
+        install_in(&cache, &base, &mut |line| lines.push(line.to_owned())).unwrap();
+        assert!(lines[0].starts_with("removing an unfinished installation"), "{lines:?}");
+        assert_eq!(installed().lines().count(), 2);
+    }
 
     #[test]
     fn an_environment_without_its_marker_is_not_taken() {
@@ -162,7 +210,6 @@ mod tests {
 
     #[test]
     fn a_python_without_gprmax_and_one_of_version_3_are_refused() {
-        use std::os::unix::fs::PermissionsExt as _;
         let folder = tempfile::tempdir().unwrap();
         let fake = |name: &str, body: &str| {
             let python = folder.path().join(name);

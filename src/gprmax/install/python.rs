@@ -80,7 +80,7 @@ fn version(python: &Path) -> Result<(u32, u32), String> {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, unix))]
 mod tests {
     use super::*;
 
