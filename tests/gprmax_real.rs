@@ -162,6 +162,10 @@ fn voxels_are_simulated_like_the_boxes_they_stand_for() {
     let b = gprmax.solve(&boxes, &go_on).unwrap();
     assert!(a.radar_trace().unwrap().peak() > 100.0);
     assert_eq!(distance(&a, &b), 0.0);
+    // Averaged, with a material that the database marks as not averagable though the file has one of its name: accepted.
+    let mut averaged = scene_with_voxels();
+    averaged.materials[2].averagable = false;
+    assert!(distance(&a, &gprmax.solve(&averaged, &go_on).unwrap()) > 1e-3);
     // The block matters: without it the trace is another by far.
     let mut without = voxels.clone();
     without.objects.remove(1);

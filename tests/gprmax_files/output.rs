@@ -205,3 +205,61 @@ fn what_is_missing_is_named() {
     assert!(message(&root(of_version("3.1.6"), named)).contains("`/rxs/rx1/Ez`"));
     assert!(message(&Group::default()).contains("holds no receivers"));
 }
+
+/// Each byte of a small output file and of a small geometry file is turned over: an answer, never a panic.
+#[test]
+fn damaged_files_give_an_answer() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut receiver = Group { name: "rx1".into(), ..Group::default() };
+    receiver.attributes = vec![("Name", Attribute::Text("a".into())), ("Position", Attribute::Floats(vec![0.0; 3]))];
+    receiver.datasets = vec![ez("Ez", &[3, 2], &[1.0; 6])];
+    let attributes = vec![
+        ("gprMax", Attribute::Text("3.1.7".into())),
+        ("dx_dy_dz", Attribute::Floats(vec![0.25; 3])),
+        ("nx_ny_nz", Attribute::Ints(vec![9, 9, 1])),
+        ("rxsteps", Attribute::Ints32(vec![2, 0, 0])),
+    ];
+    let path = place(folder.path(), &root(attributes, receiver));
+    read_traces(&path).unwrap();
+    let scene = folder.path().join("scene.in");
+    let text = "#domain: 0.08 0.08 0.002\n#dx_dy_dz: 0.002 0.002 0.002\n#time_window: 9\n#geometry_objects_read: 0 0 0 g.h5 m y\n";
+    std::fs::write(&scene, text).unwrap();
+    let database = std::fs::read_to_string(reference_case("11_geometry_objects_read").join("mats.json")).unwrap();
+    std::fs::write(folder.path().join("m.json"), database).unwrap();
+    let keys = Dataset {
+        name: "material_keys".into(),
+        shape: vec![2],
+        data: Data::Texts(vec!["stone".into(), "fines".into()]),
+        compressed: false,
+        attributes: vec![],
+    };
+    let data = Dataset {
+        name: "data".into(),
+        shape: vec![3, 2, 1],
+        data: Data::I16(vec![0, 1, -1, 0, 1, 1]),
+        compressed: false,
+        attributes: vec![],
+    };
+    let group = Group {
+        attributes: vec![("dx_dy_dz", Attribute::Floats(vec![0.002; 3]))],
+        datasets: vec![data, keys],
+        ..Group::default()
+    };
+    let geometry = folder.path().join("g.h5");
+    write(&geometry, &group).unwrap();
+    read_model(&scene).unwrap();
+    let mut refused = 0;
+    for (file, read) in
+        [(&path, &(|| read_traces(&path).is_err()) as &dyn Fn() -> bool), (&geometry, &|| read_model(&scene).is_err())]
+    {
+        let content = std::fs::read(file).unwrap();
+        for position in 0..content.len() {
+            let mut damaged = content.clone();
+            damaged[position] ^= 0xff;
+            std::fs::write(file, &damaged).unwrap();
+            refused += usize::from(read());
+        }
+        std::fs::write(file, &content).unwrap();
+    }
+    assert!(refused > 500, "{refused}");
+}

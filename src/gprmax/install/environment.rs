@@ -5,7 +5,7 @@ use std::io::{BufRead as _, BufReader, Read as _};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use super::python::python_to_install_with;
+use super::python::{python_to_install_with, start};
 use super::{GPRMAX_VERSION, H5PY_VERSION, InstallError, Interpreter, PYTHON_WITH_GPRMAX, VersionInfo, cache_folder};
 use crate::files::{FileError, create_folder, write_bytes};
 
@@ -43,11 +43,11 @@ fn install_in(
     }
     let base = base()?;
     on_line(&format!("making an environment for gprMax {GPRMAX_VERSION} in {}", folder.display()));
-    step(Command::new(&base).args(["-m", "venv"]).arg(&folder), on_line)?;
+    step(start(&base).args(["-m", "venv"]).arg(&folder), on_line)?;
     let interpreter = Interpreter { python: python_in(&folder) };
     let packages = [format!("gprMax=={GPRMAX_VERSION}"), format!("h5py=={H5PY_VERSION}")];
     let pip = ["-m", "pip", "install", "--no-input", "--disable-pip-version-check", "--progress-bar", "off"];
-    step(Command::new(&interpreter.python).args(pip).args(packages), on_line)?;
+    step(interpreter.command().args(pip).args(packages), on_line)?;
     let versions = check(&interpreter)?;
     on_line(&format!("gprMax {} is ready", versions.gprmax));
     write_bytes(&folder.join(COMPLETE), format!("gprMax {}\nh5py {}\n", versions.gprmax, versions.h5py).as_bytes())?;
@@ -78,7 +78,8 @@ pub fn find(explicit: Option<&Path>) -> Result<Interpreter, InstallError> {
 pub fn check(interpreter: &Interpreter) -> Result<VersionInfo, InstallError> {
     let script = "import sys, gprMax, h5py; print('versions', '.'.join(map(str, sys.version_info[:3])), gprMax.__version__, h5py.__version__)";
     let python = interpreter.python.clone();
-    let output = Command::new(&python)
+    let output = interpreter
+        .command()
         .args(["-c", script])
         .stdin(Stdio::null())
         .output()

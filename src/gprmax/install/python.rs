@@ -14,6 +14,23 @@ pub struct Interpreter {
     pub python: PathBuf,
 }
 
+impl Interpreter {
+    /// A command that starts it: unbuffered, text in UTF-8 whatever the locale, and without modules from the current folder.
+    pub fn command(&self) -> Command {
+        start(&self.python)
+    }
+}
+
+/// See [`Interpreter::command`]. A path with a folder in it is made absolute, since the command may run elsewhere; a bare
+/// name is looked for in `PATH`.
+pub(super) fn start(python: &Path) -> Command {
+    let bare = python.components().count() == 1;
+    let place = if bare { python.into() } else { std::path::absolute(python).unwrap_or_else(|_| python.into()) };
+    let mut command = Command::new(place);
+    command.env("PYTHONUNBUFFERED", "1").env("PYTHONUTF8", "1").env("PYTHONSAFEPATH", "1");
+    command
+}
+
 /// Versions of what an [`Interpreter`] holds.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct VersionInfo {
@@ -65,7 +82,7 @@ fn suitable(candidates: &[PathBuf]) -> Result<PathBuf, InstallError> {
 fn version(python: &Path) -> Result<(u32, u32), String> {
     // `venv` and `ensurepip` are split off from Python on some systems; without them it is of no use here.
     let script = "import sys, venv, ensurepip; print(*sys.version_info[:2])";
-    let output = Command::new(python).args(["-c", script]).output().map_err(|error| error.to_string())?;
+    let output = start(python).args(["-c", script]).output().map_err(|error| error.to_string())?;
     let text = String::from_utf8_lossy(&output.stdout);
     let numbers: Vec<u32> = text.split_whitespace().filter_map(|word| word.parse().ok()).collect();
     match numbers[..] {

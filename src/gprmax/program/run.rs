@@ -50,8 +50,8 @@ impl GprMax {
     /// leaves nothing but, when it fails, a log `<output>.log`. Where the file has an `#output_dir`, gprMax also leaves its
     /// output there.
     ///
-    /// Threads: `OMP_NUM_THREADS` is set to `threads`. With fewer threads than cores their binding to cores is switched off:
-    /// bound, the threads of runs side by side all land on the same first cores.
+    /// Threads: where `threads` is given, `OMP_NUM_THREADS` is set to it and `OMP_PROC_BIND` to `FALSE`. With an inherited `TRUE`
+    /// (common on clusters) two runs of one thread side by side both sat on core 0 and did half the work each (gprMax 4.0.1).
     ///
     /// # Errors
     /// See [`RunError`]; what gprMax said is shown.
@@ -65,7 +65,7 @@ impl GprMax {
         let place = fs::canonicalize(scratch.path()).map_err(FileError::of("read", scratch.path()))?;
         let (partial, partial_log) = (place.join("out.h5"), place.join("log"));
         let mut log = fs::File::create(&partial_log).map_err(FileError::of("write", &partial_log))?;
-        let mut command = self.command(input, &partial);
+        let mut command = self.command(&fs::canonicalize(input).map_err(FileError::of("read", input))?, &partial);
         let (mut last_lines, mut loop_time) = (VecDeque::new(), None);
         let mut elsewhere = Elsewhere::default();
         let start = Instant::now();
@@ -133,18 +133,18 @@ impl GprMax {
     }
 
     fn command(&self, input: &Path, output: &Path) -> Command {
-        let mut command = Command::new(&self.python.python);
+        let mut command = self.python.command();
+        // gprMax looks for geometry files in the current folder before it looks beside the input file: make them one.
+        if let Some(folder) = input.parent().filter(|parent| parent.is_dir()) {
+            command.current_dir(folder);
+        }
         command.args(["-m", "gprMax"]).arg(input).arg("-o").arg(output).arg("--show-progress-bars");
         if self.double_precision {
             command.args(["-cpu_precision", "double"]);
         }
-        command.env("PYTHONUNBUFFERED", "1");
         if let Some(threads) = self.threads {
-            let cores = std::thread::available_parallelism().map_or(1, usize::from);
-            command.env("OMP_NUM_THREADS", threads.max(1).to_string());
-            if threads < cores {
-                command.env("OMP_PROC_BIND", "FALSE").env_remove("OMP_PLACES").env_remove("GOMP_CPU_AFFINITY");
-            }
+            command.env("OMP_NUM_THREADS", threads.max(1).to_string()).env("OMP_PROC_BIND", "FALSE");
+            command.env_remove("OMP_PLACES").env_remove("GOMP_CPU_AFFINITY");
         }
         command
     }
@@ -194,4 +194,46 @@ fn log_path(output: &Path) -> PathBuf {
     let mut name = output.as_os_str().to_owned();
     name.push(".log");
     name.into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::ffi::OsStr;
+
+    #[test]
+    fn bounded_threads_are_not_bound_to_cores() {
+        let python = Interpreter { python: "python".into() };
+        let gprmax = GprMax { python, threads: Some(2), double_precision: true };
+        let command = gprmax.command(Path::new("a b.in"), Path::new("out.h5"));
+        let arguments: Vec<_> = command.get_args().collect();
+        assert_eq!(
+            arguments,
+            ["-m", "gprMax", "a b.in", "-o", "out.h5", "--show-progress-bars", "-cpu_precision", "double"]
+        );
+        let variable = |name: &str| command.get_envs().find(|(key, _)| *key == name).and_then(|(_, value)| value);
+        assert_eq!(variable("OMP_NUM_THREADS"), Some(OsStr::new("2")));
+        assert_eq!(variable("OMP_PROC_BIND"), Some(OsStr::new("FALSE")));
+    }
+
+    /// gprMax takes a geometry file of the same name from the current folder before the one beside the input.
+    #[test]
+    fn gprmax_runs_in_the_folder_of_its_input() {
+        let folder = tempfile::tempdir().unwrap();
+        let python = Interpreter { python: "envs/bin/python".into() };
+        let gprmax = GprMax { python, threads: None, double_precision: false };
+        let command = gprmax.command(&folder.path().join("a.in"), Path::new("out.h5"));
+        assert_eq!(command.get_current_dir(), Some(folder.path()));
+        assert!(Path::new(command.get_program()).is_absolute());
+        assert!(command.get_envs().all(|(key, _)| key != "OMP_NUM_THREADS"));
+    }
+
+    #[test]
+    fn the_place_of_the_output_is_read_off_the_log() {
+        let mut elsewhere = Elsewhere::default();
+        for line in ["Output directory: /runs/results", "|--->: 100%", "Written output file: s2.h5"] {
+            elsewhere.read(line);
+        }
+        assert_eq!(elsewhere.path(), Some(PathBuf::from("/runs/results/s2.h5")));
+    }
 }

@@ -9,6 +9,8 @@ mod build;
 mod commands;
 mod error;
 mod lines;
+mod multiple;
+mod single;
 mod values;
 
 pub use build::{Input, Note, read_input, read_model};

@@ -16,6 +16,12 @@ use crate::model::{Material, MaterialId, Model, Object, Source, TimeWindow};
 pub const DEFAULT_TEMPLATE: &str = include_str!("../../../templates/model.in");
 
 /// How to write an input file.
+///
+/// A template is one of minijinja (Jinja2). It sees texts `generator`, `title`, `time_window`, `time_step`,
+/// `stability_factor`, `threads`; lists `domain`, `spacing`, `cells`, `pml_cells`; the number `iterations`; `materials` (each
+/// `id`, `eps_r`, `sigma`, `mu_r`, `sigma_magnetic`, `poles` with `delta_eps`, `tau`), `waveforms` (`kind`, `amplitude`,
+/// `frequency`, `id`), `sources` (`polarisation`, `position`, `waveform`, `start`, `stop`), `receivers` (`position`, `name`),
+/// and `objects`, the finished lines. What is not given is an empty text or list; a name that does not exist is an error.
 #[derive(Debug, Clone, Default)]
 pub struct InputOptions {
     /// Name and text of a template to use instead of [`DEFAULT_TEMPLATE`].

@@ -1,0 +1,226 @@
+//! The commands that may stand any number of times: materials, waveforms, sources, receivers, objects.
+
+use std::path::Path;
+
+use super::super::geometry::{GeometryError, read_voxels};
+use super::build::Note;
+use super::error::Problem;
+use super::lines::Command;
+use super::values::Parameters;
+use crate::files::nearest_name;
+use crate::model::{
+    Axis, DebyePole, Excitation, HertzianDipole, Material, MaterialId, Model, Object, Receiver, Source, Waveform,
+    WaveformKind,
+};
+
+/// Reads one of the commands that may stand any number of times.
+pub(super) fn apply(
+    model: &mut Model,
+    path: &Path,
+    command: &Command<'_>,
+    notes: &mut Vec<Note>,
+) -> Result<(), Problem> {
+    match command.name {
+        "material" => material(model, command),
+        "add_dispersion_debye" => debye(model, command),
+        "waveform" => waveform(model, command),
+        "hertzian_dipole" => hertzian_dipole(model, command),
+        "rx" => receiver(model, command, notes),
+        "box" => cuboid(model, command),
+        "cylinder" => cylinder(model, command),
+        _ => geometry_objects_read(model, path, command),
+    }
+}
+
+fn material(model: &mut Model, command: &Command<'_>) -> Result<(), Problem> {
+    let p = Parameters::of(command, "EPS_R SIGMA MU_R SIGMA* ID", |n| n == 5)?;
+    let (eps_r, sigma) = (p.number(0, "a relative permittivity")?, p.number_or_infinity(1, "a conductivity in S/m")?);
+    let (mu_r, sigma_magnetic) = (p.number(2, "a relative permeability")?, p.number_or_infinity(3, "a magnetic loss")?);
+    let id = p.word(4)?;
+    p.check("the relative permittivity", eps_r, eps_r >= 1.0, "at least 1")?;
+    p.check("the conductivity", sigma, sigma >= 0.0, "0 or more, or inf")?;
+    p.check("the relative permeability", mu_r, mu_r >= 1.0, "at least 1")?;
+    p.check("the magnetic loss", sigma_magnetic, sigma_magnetic >= 0.0, "0 or more")?;
+    if sigma_magnetic.is_infinite() {
+        return Err(p.unsupported("a perfect magnetic conductor"));
+    }
+    if id.contains('+') {
+        return Err(p.unsupported("an identifier with `+`"));
+    }
+    if id == "pmc" || model.material_named(id).is_some() {
+        return Err(Problem::DefinedTwice { what: "material", id: id.into() });
+    }
+    if model.materials.len() >= usize::from(u16::MAX) {
+        return Err(p.unsupported("the 65536th material"));
+    }
+    let averagable = sigma.is_finite();
+    model.add_material(Material { id: id.into(), eps_r, sigma, mu_r, sigma_magnetic, poles: vec![], averagable });
+    Ok(())
+}
+
+fn debye(model: &mut Model, command: &Command<'_>) -> Result<(), Problem> {
+    let form = "POLES DELTA_EPS TAU [DELTA_EPS TAU ...] ID [ID ...]";
+    let p = Parameters::of(command, form, |n| n >= 4)?;
+    let count = p.count(0, "a number of poles")?;
+    p.check("the number of poles", count as f64, count > 0, "1 or more")?;
+    if count.saturating_mul(2).saturating_add(2) > p.len() {
+        return Err(Problem::Parameters { command: command.name.into(), found: p.len(), form });
+    }
+    let mut poles = vec![];
+    for pole in 0..count {
+        let delta_eps = p.number(1 + 2 * pole, "a change of permittivity")?;
+        let tau = p.number(2 + 2 * pole, "a relaxation time in seconds")?;
+        p.check("the change of permittivity", delta_eps, delta_eps >= 0.0, "0 or more")?;
+        p.check("the relaxation time", tau, tau > 0.0, "above 0")?;
+        poles.push(DebyePole { delta_eps, tau });
+    }
+    for id in p.rest(1 + 2 * count) {
+        let index = material_id(model, &p, id)?.index();
+        let material = &mut model.materials[index];
+        if material.is_pec() {
+            return Err(p.unsupported("a perfect conductor with dispersion"));
+        }
+        if index == MaterialId::FREE_SPACE.index() {
+            return Err(p.unsupported("free space with dispersion"));
+        }
+        if material.is_dispersive() {
+            return Err(p.unsupported("a second set of poles for one material"));
+        }
+        material.poles.clone_from(&poles);
+        material.averagable = false;
+    }
+    Ok(())
+}
+
+fn waveform(model: &mut Model, command: &Command<'_>) -> Result<(), Problem> {
+    let p = Parameters::of(command, "TYPE AMPLITUDE FREQUENCY ID", |n| n == 4)?;
+    let (word, id) = (p.word(0)?.to_lowercase(), p.word(3)?);
+    let Some(kind) = WaveformKind::ALL.into_iter().find(|kind| kind.name() == word) else {
+        let known = WaveformKind::ALL.map(WaveformKind::name).join(", ");
+        return Err(p.not_one_of(&word, "a waveform that the embedded solver knows", known));
+    };
+    let (amplitude, frequency) = (p.number(1, "an amplitude")?, p.number(2, "a frequency in Hz")?);
+    p.check("the frequency", frequency, frequency > 0.0, "above 0")?;
+    if model.waveforms.iter().any(|known| known.id == id) {
+        return Err(Problem::DefinedTwice { what: "waveform", id: id.into() });
+    }
+    model.waveforms.push(Waveform { id: id.into(), kind, amplitude, frequency });
+    Ok(())
+}
+
+fn hertzian_dipole(model: &mut Model, command: &Command<'_>) -> Result<(), Problem> {
+    let p = Parameters::of(command, "x|y|z X Y Z WAVEFORM [START STOP]", |n| n == 5 || n == 7)?;
+    let word = p.word(0)?;
+    let axis = [Axis::X, Axis::Y, Axis::Z].into_iter().find(|axis| axis.name() == word.to_lowercase());
+    let polarisation = axis.ok_or_else(|| p.not_one_of(word, "a polarisation", "x, y, z".into()))?;
+    let position = p.point(1)?;
+    inside(model, "source", position)?;
+    let id = p.word(4)?;
+    let waveform = model.waveforms.iter().position(|known| known.id == id).ok_or_else(|| Problem::Undefined {
+        what: "waveform",
+        id: id.into(),
+        nearest: nearest_name(id, model.waveforms.iter().map(|known| known.id.as_str())).map(Into::into),
+    })?;
+    let mut excitation = Excitation { start: 0.0, stop: None };
+    if p.len() == 7 {
+        let (start, stop) = (p.number(5, "a time in seconds")?, p.number(6, "a time in seconds")?);
+        p.check("the start", start, start >= 0.0, "0 or later")?;
+        p.check("the stop", stop, stop > start, "later than the start")?;
+        excitation = Excitation { start, stop: Some(stop) };
+    }
+    model.sources.push(Source::HertzianDipole(HertzianDipole { polarisation, position, waveform, excitation }));
+    Ok(())
+}
+
+fn receiver(model: &mut Model, command: &Command<'_>, notes: &mut Vec<Note>) -> Result<(), Problem> {
+    let p = Parameters::of(command, "X Y Z [NAME COMPONENT ...]", |n| n == 3 || n >= 5)?;
+    let position = p.point(0)?;
+    inside(model, "receiver", position)?;
+    let components = p.rest(4);
+    for word in components {
+        if !["Ex", "Ey", "Ez", "Hx", "Hy", "Hz"].contains(word) {
+            return Err(match *word {
+                "Ix" | "Iy" | "Iz" => p.unsupported("a current"),
+                _ => p.not_one_of(word, "a component", "Ex, Ey, Ez, Hx, Hy, Hz".into()),
+            });
+        }
+    }
+    if !components.is_empty() && components.len() < 6 {
+        let text = format!("`#rx` asks for {} only: every component of the solver is given", components.join(" "));
+        notes.push(Note { line: command.line, text });
+    }
+    model.receivers.push(Receiver { position, name: p.word(3).ok().map(Into::into) });
+    Ok(())
+}
+
+fn cuboid(model: &mut Model, command: &Command<'_>) -> Result<(), Problem> {
+    let p = Parameters::of(command, "X1 Y1 Z1 X2 Y2 Z2 MATERIAL [y|n]", |n| (7..=11).contains(&n))?;
+    let (lower, upper) = (p.point(0)?, p.point(3)?);
+    for axis in [Axis::X, Axis::Y, Axis::Z] {
+        let (low, high) = (lower[axis.index()], upper[axis.index()]);
+        if low >= high {
+            return Err(Problem::Corners { axis: axis.name(), lower: low, upper: high });
+        }
+    }
+    let (material, averaging) = stuff(model, &p, 6)?;
+    model.objects.push(Object::Box { lower, upper, material, averaging });
+    Ok(())
+}
+
+fn cylinder(model: &mut Model, command: &Command<'_>) -> Result<(), Problem> {
+    let p = Parameters::of(command, "X1 Y1 Z1 X2 Y2 Z2 RADIUS MATERIAL [y|n]", |n| (8..=12).contains(&n))?;
+    let (start, end) = (p.point(0)?, p.point(3)?);
+    let radius = p.number(6, "a radius in metres")?;
+    p.check("the radius", radius, radius > 0.0, "above 0")?;
+    let (material, averaging) = stuff(model, &p, 7)?;
+    model.objects.push(Object::Cylinder { start, end, radius, material, averaging });
+    Ok(())
+}
+
+/// The material of an object and its averaging flag, from parameter `first` on; a tag may stand behind the flag.
+fn stuff(model: &Model, p: &Parameters<'_>, first: usize) -> Result<(MaterialId, bool), Problem> {
+    let is_flag = |index: usize| p.word(index).is_ok_and(|word| matches!(word, "y" | "Y" | "n" | "N"));
+    match p.len() - first {
+        1 => Ok((material_id(model, p, p.word(first)?)?, true)),
+        2 => Ok((material_id(model, p, p.word(first)?)?, p.yes_or_no(first + 1, "an averaging flag")?)),
+        3 if is_flag(first + 1) => {
+            Ok((material_id(model, p, p.word(first)?)?, p.yes_or_no(first + 1, "an averaging flag")?))
+        }
+        _ => Err(p.unsupported("a direction-dependent material (three identifiers)")),
+    }
+}
+
+fn geometry_objects_read(model: &mut Model, path: &Path, command: &Command<'_>) -> Result<(), Problem> {
+    let p = Parameters::of(command, "X Y Z FILE.h5 DATABASE [y|n]", |n| n == 5 || n == 6)?;
+    let origin = p.point(0)?;
+    let (file, database) = (path.with_file_name("").join(p.word(3)?), p.word(4)?);
+    let averaging = p.len() == 6 && p.yes_or_no(5, "an averaging flag")?;
+    if database.ends_with(".txt") {
+        return Err(GeometryError::OldFormat { path: file }.into());
+    }
+    let voxels = read_voxels(model, &file, database, origin, averaging)?;
+    model.objects.push(Object::Voxels(voxels));
+    Ok(())
+}
+
+fn material_id(model: &Model, p: &Parameters<'_>, id: &str) -> Result<MaterialId, Problem> {
+    if id == "pmc" {
+        return Err(p.unsupported("a perfect magnetic conductor"));
+    }
+    model.material_named(id).ok_or_else(|| Problem::Undefined {
+        what: "material",
+        id: id.into(),
+        nearest: nearest_name(id, model.materials.iter().map(|known| known.id.as_str())).map(Into::into),
+    })
+}
+
+/// Sources and receivers must lie on a node of the grid.
+fn inside(model: &Model, what: &'static str, position: [f64; 3]) -> Result<(), Problem> {
+    let grid = &model.grid;
+    let within = |axis: usize| (0..=grid.cells[axis] as i64).contains(&grid.node(axis, position[axis]));
+    if (0..3).all(within) {
+        return Ok(());
+    }
+    let ([x, y, z], domain) = (position, std::array::from_fn(|axis| grid.cells[axis] as f64 * grid.spacing[axis]));
+    Err(Problem::Outside { what, x, y, z, domain })
+}
