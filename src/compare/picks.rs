@@ -127,6 +127,9 @@ pub struct ExpectedEchoes {
     pub plate: Option<(Seconds, Seconds)>,
     /// Whether the trace has no direct wave (a plane-wave solution, or after it was subtracted).
     pub no_direct_wave: bool,
+    /// Whether the trace is free of noise, as a simulated one is: then the strongest peak in a window counts, however long
+    /// the reverberation of the stones, which would else be taken for noise.
+    pub no_noise: bool,
 }
 
 /// The three echoes of a trace.
@@ -165,14 +168,14 @@ const DIP: f64 = 0.7;
 /// Picks the three echoes.
 ///
 /// With a window: the strongest peak of the envelope inside it, if it is 6 times the noise (the lower quartile of the
-/// envelope). Without: peaks of the envelope that are 8 times the noise and 2 % of the strongest, two of them separate when
+/// envelope) or the trace is said to have none. Without: peaks of the envelope that are 8 times the noise and 2 % of the strongest, two of them separate when
 /// the envelope between them dips below 0.7 of the smaller. The *direct wave* is the first of these that has a quarter of
 /// the strongest; the *surface echo* the first after it (the first of all where there is no direct wave); the *plate echo*
 /// the strongest after the surface echo. Where nothing stands out, the reason is returned and no pick.
 ///
 /// A trace that is empty gives no picks.
 pub fn pick_echoes(trace: &AScan, expected: &ExpectedEchoes) -> Picks {
-    let finder = Finder::new(trace);
+    let finder = Finder { no_noise: expected.no_noise, ..Finder::new(trace) };
     let candidates = finder.candidates();
     let below_noise = NoEcho::BelowNoise { strongest: finder.largest, needed: finder.threshold };
     let strong = |index: &&usize| finder.envelope[**index] >= STRONG * finder.largest;
@@ -210,6 +213,7 @@ struct Finder<'a> {
     noise: f64,
     largest: f64,
     threshold: f64,
+    no_noise: bool,
 }
 
 impl<'a> Finder<'a> {
@@ -220,7 +224,7 @@ impl<'a> Finder<'a> {
         let noise = sorted.get(sorted.len() / 4).copied().unwrap_or(0.0);
         let largest = sorted.last().copied().unwrap_or(0.0);
         let threshold = (NOISE_FACTOR * noise).max(LEAST_ECHO * largest);
-        Self { trace, envelope, noise, largest, threshold }
+        Self { trace, envelope, noise, largest, threshold, no_noise: false }
     }
 
     fn is_peak(&self, k: usize) -> bool {
@@ -258,7 +262,7 @@ impl<'a> Finder<'a> {
         let peaks = indices.iter().copied().filter(|k| self.is_peak(*k));
         let best = peaks.max_by(|a, b| self.envelope[*a].total_cmp(&self.envelope[*b]));
         let best = best.ok_or(NoEcho::NoPeakInWindow { from, to })?;
-        let needed = NOISE_FACTOR_IN_WINDOW * self.noise;
+        let needed = if self.no_noise { 0.0 } else { NOISE_FACTOR_IN_WINDOW * self.noise };
         if self.envelope[best] < needed {
             return Err(NoEcho::BelowNoise { strongest: self.envelope[best], needed });
         }
