@@ -1,0 +1,254 @@
+//! From what the user wrote to a checked and packed scene.
+
+use std::path::Path;
+use std::time::Instant;
+
+use crate::files;
+use crate::geometry::{Disc, disc_rectangle_area};
+use crate::material::{self, BottomFilledBed, FoulingIndices};
+use crate::packing::{self, Packing, Porosity, RsaInput, RsaOutcome};
+use crate::units::constants::C0;
+use crate::units::{KilogramsPerCubicMetre, Metres, Seconds, Share};
+
+use super::arrivals::{Arrivals, Layer, arrivals};
+use super::bed::{Bed, BulkPermittivity};
+use super::check::check;
+use super::error::SceneError;
+use super::fouling::{FoulingAmount, FoulingReport};
+use super::medium::{MaterialSpec, Medium};
+use super::mixture;
+use super::spec::{FoulingSpec, GradingSpec, PackingMethod, SceneSpec};
+
+/// A scene, checked once, with its packing and the figures derived from it.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// What the user wrote, every default and material filled in.
+    pub spec: SceneSpec,
+    /// The random sequential adsorption, where there was one.
+    pub adsorption: Option<RsaOutcome>,
+    /// The packing; absent for a homogeneous bed.
+    pub packing: Option<Packing>,
+    /// Walls and base.
+    pub wall: Medium,
+    /// What lies where in the bed.
+    pub bed: Bed,
+    /// Bulk permittivities of the bed's zones, from the bottom's view last.
+    pub bulk: Vec<BulkPermittivity>,
+    /// The layers from the surface down to the metal plate, with their mixtures' permittivities.
+    pub layers: Vec<Layer>,
+    /// When a plane wave's echoes would arrive, from the emission.
+    pub arrivals: Arrivals,
+    /// The fouling in every measure.
+    pub fouling: Option<FoulingReport>,
+    /// Wall time of the packing, s.
+    pub packing_seconds: f64,
+}
+
+impl Scene {
+    /// The stones; empty for a homogeneous bed. Origin: left lower corner of the bed.
+    pub fn discs(&self) -> &[Disc] {
+        self.packing.as_ref().map_or(&[], |packing| packing.discs.as_slice())
+    }
+
+    /// Two-way travel time through the layers if each were as slow as a 2-D bed of true stones.
+    pub fn slowest_delay(&self) -> Seconds {
+        let delay = |layer: &Layer| {
+            let zone = self.bulk.iter().find(|bulk| layer.name.starts_with(bulk.zone));
+            let eps = zone.map_or(layer.eps_r, |bulk| bulk.two_dimensional.max(bulk.mixture));
+            2.0 * layer.thickness.si() * eps.sqrt() / C0
+        };
+        Seconds(self.layers.iter().map(delay).sum())
+    }
+}
+
+/// Resolves a scene: fills in the materials, checks every quantity, packs the stones and derives the figures.
+///
+/// # Errors
+/// See [`SceneError`].
+pub fn resolve(spec: &SceneSpec) -> Result<Scene, SceneError> {
+    let mut spec = spec.clone();
+    check(&spec)?;
+    let voids = Porosity::new(spec.packing.voids)?;
+    spec.packing.grading = GradingSpec::Curve(spec.packing.grading.curve()?);
+    fill_in_materials(&mut spec)?;
+    let fouled_height = fouled_height(&spec)?;
+    let wall = mixture::medium(&spec, &spec.tank.wall_material)?;
+    let (bed, bulk) = mixture::bed(&spec, fouled_height)?;
+    let layers = layers(&spec, &bed, &wall);
+    let started = Instant::now();
+    let adsorption = match spec.packing.method {
+        PackingMethod::Rsa => Some(packing::pack(&rsa_input(&spec, voids)?, spec.seed)?),
+        PackingMethod::Homogeneous | PackingMethod::File => None,
+    };
+    let packing = match (&adsorption, spec.packing.method) {
+        (Some(outcome), _) => Some(outcome.after.clone()),
+        (None, PackingMethod::File) => {
+            let file = spec.packing.file.as_ref().ok_or(SceneError::NoPackingFile)?;
+            Some(read_packing(file, spec.tank.width)?)
+        }
+        (None, _) => None,
+    };
+    let packing_seconds = started.elapsed().as_secs_f64();
+    let fouling = spec.fouling.as_ref().filter(|_| fouled_height > 0.0);
+    let fouling = fouling.map(|fouling| report(&spec, fouling, fouled_height, packing.as_ref())).transpose()?;
+    let arrivals = arrivals(spec.antenna.height, &layers);
+    Ok(Scene { adsorption, packing, wall, bed, bulk, layers, arrivals, fouling, packing_seconds, spec })
+}
+
+/// The input of the adsorption that a scene asks for.
+///
+/// # Errors
+/// When there is no built-in sieve curve of the name given.
+pub fn rsa_input(spec: &SceneSpec, voids: Porosity) -> Result<RsaInput, SceneError> {
+    Ok(RsaInput {
+        width: spec.tank.width,
+        height: spec.tank.height,
+        voids,
+        grading: spec.packing.grading.curve()?,
+        class_reading: spec.packing.class_reading,
+        input: spec.packing.input,
+        strip: spec.packing.strip,
+    })
+}
+
+/// Stones of a packing from outside may be this deep in one another, m: coordinates rounded to a tenth of a millimetre.
+const FOREIGN_OVERLAP: Metres = Metres(2e-4);
+
+/// Reads a packing: JSON as this program writes it, else CSV `x,y,radius` in metres. Its height is that of its stones.
+fn read_packing(file: &Path, width: Metres) -> Result<Packing, SceneError> {
+    let text = files::read_text(file)?;
+    if file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
+        return Ok(packing::export::from_json(&text, FOREIGN_OVERLAP)?);
+    }
+    let free = packing::export::from_csv(&text, None, FOREIGN_OVERLAP)?;
+    let height = free.top();
+    Ok(packing::export::from_csv(&text, Some((width, height)), FOREIGN_OVERLAP)?)
+}
+
+/// Puts every material that the scene names into its table, so that the file that is kept holds all values.
+fn fill_in_materials(spec: &mut SceneSpec) -> Result<(), SceneError> {
+    let mut names = vec![spec.packing.stone.clone(), spec.tank.wall_material.clone()];
+    names.extend(spec.fouling.as_ref().map(|fouling| fouling.material.clone()));
+    for name in names {
+        if spec.materials.contains_key(&name) {
+            continue;
+        }
+        let known = material::named(&name)?;
+        let dielectric = known.dielectric().ok_or_else(|| SceneError::Conductor { name: name.clone() })?;
+        let entry = MaterialSpec {
+            eps_r: dielectric.eps_r,
+            sigma: dielectric.sigma,
+            density: density(&name),
+            source: known.source.into(),
+            assumed: known.confidence != material::Confidence::ReadInSource,
+            poles: dielectric.poles,
+        };
+        spec.materials.insert(name, entry);
+    }
+    Ok(())
+}
+
+/// Grain densities of the tank's limestone and silt (Constr. Build. Mater. 140, 2017).
+fn density(name: &str) -> Option<KilogramsPerCubicMetre> {
+    match name {
+        "limestone" => Some(KilogramsPerCubicMetre(2800.0)),
+        "silt" => Some(KilogramsPerCubicMetre(2500.0)),
+        _ => None,
+    }
+}
+
+/// Density where a material gives none: quartz. Assumed; enters masses only.
+const USUAL_DENSITY: KilogramsPerCubicMetre = KilogramsPerCubicMetre(2650.0);
+
+fn bottom_filled(spec: &SceneSpec, fouling: &FoulingSpec) -> BottomFilledBed {
+    let density = |name: &str| spec.materials.get(name).and_then(|material| material.density).unwrap_or(USUAL_DENSITY);
+    BottomFilledBed {
+        height: spec.tank.height,
+        porosity: spec.packing.voids,
+        stone_density: density(&spec.packing.stone),
+        fines_porosity: fouling.porosity,
+        fines_density: density(&fouling.material),
+    }
+}
+
+/// The amount in the bed's own measures: a share of the column becomes one of the bed.
+fn amount_of_bed(spec: &SceneSpec, amount: FoulingAmount) -> material::FoulingAmount {
+    match amount {
+        FoulingAmount::Height(height) => material::FoulingAmount::Height(height),
+        FoulingAmount::OfVoids(share) => material::FoulingAmount::VoidsFilled(share),
+        FoulingAmount::ByMass(share) => material::FoulingAmount::Mass(share),
+        FoulingAmount::ByVolume(share) => {
+            let column = (spec.tank.height.si() + spec.tank.base.si()) / spec.tank.height.si();
+            material::FoulingAmount::Volume(Share(share.si() * column))
+        }
+    }
+}
+
+/// Height of the fouled zone, m. Fines that fill only part of the voids need a zone that much higher.
+fn fouled_height(spec: &SceneSpec) -> Result<f64, SceneError> {
+    let Some(fouling) = &spec.fouling else { return Ok(0.0) };
+    let bed = bottom_filled(spec, fouling);
+    let full = bed.fouling(amount_of_bed(spec, fouling.amount))?;
+    if matches!(fouling.amount, FoulingAmount::Height(_)) {
+        return Ok(full.height.si());
+    }
+    let height = full.height.si() / fouling.filling.si();
+    bed.fouling(material::FoulingAmount::Height(Metres(height)))?;
+    Ok(height)
+}
+
+fn layers(spec: &SceneSpec, bed: &Bed, wall: &Medium) -> Vec<Layer> {
+    let centre = spec.antenna.frequency;
+    let (height, fouled) = (spec.tank.height.si(), bed.fouled_height);
+    let mut layers = Vec::new();
+    let mut add = |name: &str, thickness: f64, medium: &Medium| {
+        if thickness > 0.0 {
+            layers.push(Layer { name: name.into(), thickness: Metres(thickness), eps_r: medium.eps_r_at(centre) });
+        }
+    };
+    add("clean ballast", height - fouled, &bed.bulk_clean);
+    add("fouled ballast", fouled, &bed.bulk_fouled);
+    add("base plate", spec.tank.base.si(), wall);
+    layers
+}
+
+fn report(
+    spec: &SceneSpec,
+    fouling: &FoulingSpec,
+    fouled_height: f64,
+    packing: Option<&Packing>,
+) -> Result<FoulingReport, SceneError> {
+    let bed = bottom_filled(spec, fouling);
+    let in_full_voids = material::FoulingAmount::Height(Metres(fouled_height * fouling.filling.si()));
+    let nominal = FoulingIndices {
+        height_percent: 100.0 * fouled_height / spec.tank.height.si(),
+        ..bed.indices(in_full_voids, Some(fouling.passing))?
+    };
+    let of_packing = packing.map(|packing| {
+        let width = spec.tank.width.si();
+        let stones_below = |y: f64| -> f64 {
+            packing.discs.iter().map(|d| disc_rectangle_area(d.radius, -d.x, width - d.x, -d.y, y - d.y)).sum()
+        };
+        let stone = stones_below(spec.tank.height.si());
+        FoulingIndices::of(
+            &material::Bed {
+                stone_volume: stone,
+                void_volume: width * spec.tank.height.si() - stone,
+                fines_bulk_volume: (width * fouled_height - stones_below(fouled_height)) * fouling.filling.si(),
+                fines_porosity: bed.fines_porosity,
+                stone_density: bed.stone_density,
+                fines_density: bed.fines_density,
+                height: spec.tank.height,
+                fouled_height: Metres(fouled_height),
+            },
+            Some(fouling.passing),
+        )
+    });
+    let column = spec.tank.height.si() / (spec.tank.height.si() + spec.tank.base.si());
+    Ok(FoulingReport {
+        height: Metres(fouled_height),
+        volume_percent_of_column: nominal.volume_percent * column,
+        nominal,
+        of_packing,
+    })
+}
