@@ -1,1 +1,8 @@
-//! From a scene to a model.
+//! From a scene to a model: the tank, the layers and the stones on a grid.
+
+mod build;
+mod discs;
+mod placement;
+
+pub use build::{RasterError, antenna_alone, build_model};
+pub use placement::Placement;
