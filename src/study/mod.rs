@@ -1,1 +1,11 @@
-//! Ensembles, and accuracy against cost.
+//! Studies: published cases against ours, ensembles, and accuracy against cost. Solvers come in as `&dyn Forward`.
+
+mod case;
+mod cost;
+mod echoes;
+mod statistics;
+
+pub use case::{Case, CaseError, Expected, Row, Verdict};
+pub use cost::{CostError, CostPoint, CostScene, CostSetting, CostSolver, CostTable, cost_curve};
+pub use echoes::{EchoError, EchoTime, Echoes, PlateReference, plate_reference, simulate_echoes};
+pub use statistics::{MeanAndSpread, fit_exponent};

@@ -1,0 +1,269 @@
+//! What accuracy costs in time: the error of a trace beside wall time and memory, over cell size, smoothing and precision.
+
+use std::time::Instant;
+
+use crate::compare;
+use crate::forward::{Forward, ForwardError, OnProgress};
+use crate::raster;
+use crate::scene::{Scene, SceneError, SceneSpec, Smoothing, resolve};
+use crate::trace::AScan;
+use crate::units::{Metres, Seconds, Share};
+
+use super::echoes::EchoError;
+
+/// One setting of the knobs that a user can turn.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct CostSetting {
+    /// Cell size.
+    pub cell: Metres,
+    /// What happens where two materials meet.
+    pub smoothing: Smoothing,
+    /// Whether the fields are in double precision.
+    pub double_precision: bool,
+}
+
+/// What a setting gives and costs.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct CostPoint {
+    /// The setting.
+    pub setting: CostSetting,
+    /// Relative L2 error of the echoes (direct wave taken off), against the extrapolated trace.
+    pub error: f64,
+    /// Wall time of the run, s.
+    pub seconds: f64,
+    /// Memory of fields and coefficients, bytes.
+    pub bytes: u64,
+    /// Cells times steps.
+    pub cell_steps: u64,
+}
+
+/// The scene whose trace is judged: the tank, narrower, with 20 cm of fouling.
+#[derive(Debug, Clone)]
+pub struct CostScene {
+    spec: SceneSpec,
+}
+
+/// All points, and how the reference came about.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct CostTable {
+    /// Version of the format.
+    pub format_version: u32,
+    /// Centre frequency that the cell sizes are for, Hz.
+    pub frequency: f64,
+    /// Order of convergence measured on the three finest area-smoothed runs; the reference is extrapolated with it.
+    pub measured_order: f64,
+    /// Relative L2 difference of the two finest area-smoothed runs: the scale of the reference's own uncertainty.
+    pub finest_difference: f64,
+    /// The points.
+    pub points: Vec<CostPoint>,
+}
+
+impl CostScene {
+    /// The tank at 64 cm width, antenna and walls on nodes of every cell size that divides 8 mm.
+    ///
+    /// The narrower tank keeps stones, layers and plate; it saves half the time.
+    pub fn standard() -> Result<Self, SceneError> {
+        let mut spec = SceneSpec::preset("tank")?;
+        spec.title = "cost curve".into();
+        spec.tank.width = Metres(0.64);
+        spec.antenna.separation = Metres(0.032);
+        spec.grid.time_window = Seconds(15e-9);
+        spec.fouling = Some(crate::scene::FoulingSpec::of("20cm".parse()?));
+        Ok(Self { spec })
+    }
+
+    /// The scene with a setting.
+    ///
+    /// # Errors
+    /// When it cannot be resolved.
+    pub fn with(&self, setting: CostSetting) -> Result<Scene, SceneError> {
+        let mut spec = self.spec.clone();
+        (spec.grid.cell, spec.grid.smoothing) = (setting.cell, setting.smoothing);
+        resolve(&spec)
+    }
+
+    /// Centre frequency, Hz.
+    pub fn frequency(&self) -> f64 {
+        self.spec.antenna.frequency.si()
+    }
+}
+
+/// What a solver of one precision is, and what it says of its memory.
+pub struct CostSolver<'a> {
+    /// The solver.
+    pub solver: &'a dyn Forward,
+    /// Whether it computes in double precision.
+    pub double_precision: bool,
+    /// Memory for a model, bytes.
+    pub bytes: &'a dyn Fn(&crate::model::Model) -> u64,
+}
+
+/// Why there is no cost curve.
+#[derive(Debug, thiserror::Error)]
+pub enum CostError {
+    /// No scene.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// No trace.
+    #[error(transparent)]
+    Echo(#[from] EchoError),
+    /// Fewer than three cell sizes.
+    #[error("{cells} cell sizes cannot be extrapolated: at least 3 are needed, each half the one before")]
+    TooFewCells {
+        /// How many there are.
+        cells: usize,
+    },
+}
+
+/// Step of the common time axis on which traces are compared, s: a fiftieth of the shortest period that matters (3 GHz).
+const COMMON_STEP: f64 = 5e-12;
+
+/// Measures the curve over `cells` (each half the one before, coarsest first), every smoothing and every solver.
+///
+/// The reference is the limit of the area-smoothed runs in the most precise solver, by Richardson extrapolation of the
+/// traces with the order measured on the three finest cells.
+///
+/// # Errors
+/// See [`CostError`].
+pub fn cost_curve(
+    scene: &CostScene,
+    cells: &[Metres],
+    solvers: &[CostSolver<'_>],
+    on_point: &dyn Fn(usize, usize),
+    on_progress: OnProgress<'_>,
+) -> Result<CostTable, CostError> {
+    if cells.len() < 3 {
+        return Err(CostError::TooFewCells { cells: cells.len() });
+    }
+    let smoothings = [Smoothing::None, Smoothing::Edges, Smoothing::Area];
+    let total = cells.len() * smoothings.len() * solvers.len();
+    let mut runs: Vec<(CostPoint, AScan)> = Vec::new();
+    for solver in solvers {
+        for &cell in cells {
+            for smoothing in smoothings {
+                let setting = CostSetting { cell, smoothing, double_precision: solver.double_precision };
+                runs.push(one_run(scene, setting, solver, on_progress)?);
+                on_point(runs.len(), total);
+            }
+        }
+    }
+    let most_precise = solvers.iter().any(|solver| solver.double_precision);
+    let smooth: Vec<&AScan> = runs
+        .iter()
+        .filter(|(p, _)| p.setting.smoothing == Smoothing::Area && p.setting.double_precision == most_precise)
+        .map(|(_, trace)| trace)
+        .collect();
+    let [.., coarse, middle, fine] = smooth.as_slice() else {
+        return Err(CostError::TooFewCells { cells: smooth.len() });
+    };
+    let (first, last) = (distance(coarse, middle), distance(middle, fine));
+    let measured_order = (first / last).log2().clamp(0.5, 4.0);
+    let weight = 1.0 / (2f64.powf(measured_order) - 1.0);
+    let limit: Vec<f64> =
+        fine.samples.iter().zip(&middle.samples).map(|(fine, middle)| fine + weight * (fine - middle)).collect();
+    let limit = AScan { samples: limit, ..(*fine).clone() };
+    let size = norm(&limit.samples);
+    let finest_difference = last / size;
+    let points = runs
+        .iter()
+        .map(|(point, trace)| CostPoint { error: distance(trace, &limit) / size, ..point.clone() })
+        .collect();
+    Ok(CostTable { format_version: 1, frequency: scene.frequency(), measured_order, finest_difference, points })
+}
+
+/// Runs a setting with and without the tank; the difference holds the echoes alone.
+fn one_run(
+    scene: &CostScene,
+    setting: CostSetting,
+    solver: &CostSolver<'_>,
+    on_progress: OnProgress<'_>,
+) -> Result<(CostPoint, AScan), CostError> {
+    let model = raster::build_model(&scene.with(setting)?).map_err(EchoError::from)?;
+    let started = Instant::now();
+    let trace = radar_trace(solver.solver, &model, on_progress)?;
+    let seconds = started.elapsed().as_secs_f64();
+    let alone = raster::antenna_alone(&model);
+    let (echoes, _) = compare::subtract_reference(&trace, &radar_trace(solver.solver, &alone, on_progress)?);
+    let window = scene.spec.grid.time_window.si();
+    let trace = compare::resample(&echoes, Seconds(0.0), Seconds(COMMON_STEP), (window / COMMON_STEP) as usize);
+    let cell_steps = (model.grid.cell_count() * model.iterations()) as u64;
+    let point = CostPoint { setting, error: f64::NAN, seconds, bytes: (solver.bytes)(&model), cell_steps };
+    Ok((point, trace))
+}
+
+fn radar_trace(solver: &dyn Forward, model: &crate::model::Model, on_progress: OnProgress<'_>) -> Result<AScan, EchoError> {
+    solver.solve(model, on_progress).map_err(EchoError::from)?.radar_trace().cloned().ok_or(EchoError::NoTrace)
+}
+
+fn norm(samples: &[f64]) -> f64 {
+    samples.iter().map(|v| v * v).sum::<f64>().sqrt()
+}
+
+fn distance(a: &AScan, b: &AScan) -> f64 {
+    a.samples.iter().zip(&b.samples).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+}
+
+impl CostTable {
+    /// The setting of least cell-steps (single precision) whose error is at most `tolerance` at `frequency`.
+    ///
+    /// The error is taken to depend on cells per wavelength, so that a cell size scales with the wavelength; an error
+    /// counts only if every finer cell of the same smoothing keeps it too.
+    pub fn cheapest(&self, tolerance: Share) -> Option<&CostPoint> {
+        let holds = |point: &CostPoint| {
+            self.points
+                .iter()
+                .filter(|other| {
+                    other.setting.smoothing == point.setting.smoothing
+                        && other.setting.double_precision == point.setting.double_precision
+                        && other.setting.cell.si() <= point.setting.cell.si()
+                })
+                .all(|other| other.error <= tolerance.si())
+        };
+        self.points
+            .iter()
+            .filter(|point| !point.setting.double_precision && holds(point))
+            .min_by(|a, b| a.cell_steps.cmp(&b.cell_steps).then(a.error.total_cmp(&b.error)))
+    }
+
+    /// The smallest error that any setting reaches.
+    pub fn best(&self) -> Option<&CostPoint> {
+        self.points.iter().min_by(|a, b| a.error.total_cmp(&b.error))
+    }
+}
+
+/// `ForwardError` reaches [`CostError`] through [`EchoError`], so that a stop stays a stop.
+impl From<ForwardError> for CostError {
+    fn from(error: ForwardError) -> Self {
+        Self::Echo(EchoError::Forward(error))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(cell: f64, smoothing: Smoothing, error: f64) -> CostPoint {
+        let setting = CostSetting { cell: Metres(cell), smoothing, double_precision: false };
+        CostPoint { setting, error, seconds: 1.0, bytes: 1, cell_steps: (1.0 / cell.powi(3)) as u64 }
+    }
+
+    #[test]
+    fn the_cheapest_setting_keeps_the_tolerance_also_when_refined() {
+        let table = CostTable {
+            format_version: 1,
+            frequency: 1e9,
+            measured_order: 2.0,
+            finest_difference: 1e-3,
+            points: vec![
+                point(0.008, Smoothing::Edges, 0.015), // by luck: the next finer one is worse
+                point(0.004, Smoothing::Edges, 0.05),
+                point(0.002, Smoothing::Edges, 0.01),
+                point(0.004, Smoothing::Area, 0.018),
+                point(0.002, Smoothing::Area, 0.004),
+            ],
+        };
+        let chosen = table.cheapest(Share(0.02)).unwrap().setting;
+        assert_eq!((chosen.cell, chosen.smoothing), (Metres(0.004), Smoothing::Area));
+        assert!(table.cheapest(Share(0.001)).is_none());
+    }
+}
