@@ -1,0 +1,122 @@
+//! `build`: from a scene to a folder with packing, map, gprMax input and manifest.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::Args;
+
+use crate::cli::cost_choice;
+use crate::cli::error::CliError;
+use crate::cli::folder;
+use crate::cli::manifest::{Manifest, Seconds};
+use crate::cli::pack;
+use crate::cli::scene_args::SceneArgs;
+use crate::cli::map_figure;
+use crate::cli::interrupt;
+use crate::files;
+use crate::gprmax::{self, InputOptions};
+use crate::model;
+use crate::raster;
+use crate::scene::{self, FoulingAmount, SceneSpec};
+use crate::units::Share;
+
+/// Build a scene: pack the stones, mix the materials, draw the map, write the gprMax input.
+#[derive(Debug, Clone, Args)]
+pub struct BuildArgs {
+    /// Scene file; without one the preset `tank`. A file kept by an earlier build makes the same bytes again.
+    #[arg(value_name = "SCENE.toml")]
+    pub scene: Option<PathBuf>,
+    #[command(flatten)]
+    pub args: SceneArgs,
+    /// Folder to write [default: a name from fouling and seed, in the current folder].
+    #[arg(long, value_name = "FOLDER")]
+    pub out: Option<PathBuf>,
+    /// Build NUM siblings with seeds counted from --seed, each in its own folder below --out.
+    #[arg(long, value_name = "NUM", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub realisations: u32,
+    /// Choose the cheapest cell size and smoothing whose error the cost table gives as at most this (see `cost fdtd2d`).
+    #[arg(long, value_name = "SHARE", conflicts_with_all = ["cell", "smoothing"])]
+    pub tolerance: Option<Share>,
+    /// Template for the gprMax input in place of the built-in one.
+    #[arg(long, value_name = "FILE")]
+    pub template: Option<PathBuf>,
+    /// Write into a folder that is not empty, over files of the same names.
+    #[arg(long)]
+    pub force: bool,
+    /// Print the manifests as JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Runs the subcommand.
+///
+/// # Errors
+/// When the scene cannot be built or written.
+pub fn run(args: &BuildArgs) -> Result<(), CliError> {
+    let mut spec = args.args.spec(args.scene.as_deref())?;
+    if let Some(tolerance) = args.tolerance {
+        let choice = cost_choice::choose(tolerance, spec.antenna.frequency)?;
+        eprintln!("{}", choice.sentence());
+        (spec.grid.cell, spec.grid.smoothing) = (choice.cell, choice.smoothing);
+    }
+    let template = args.template.as_deref().map(|path| Ok::<_, CliError>((path.display().to_string(), files::read_text(path)?))).transpose()?;
+    let base = args.out.clone().unwrap_or_else(|| default_folder(&spec, args.realisations));
+    let mut manifests = Vec::new();
+    for index in 0..args.realisations {
+        if interrupt::requested() {
+            return Err(crate::forward::ForwardError::Stopped.into());
+        }
+        let mut spec = spec.clone();
+        spec.seed = spec.seed.wrapping_add(u64::from(index));
+        let target = if args.realisations == 1 { base.clone() } else { base.join(format!("seed-{}", spec.seed)) };
+        let manifest = build_folder(&spec, &target, template.clone(), args.force)?;
+        if !args.json {
+            println!("{}: {}", target.display(), manifest.summary());
+        }
+        manifests.push(manifest);
+    }
+    if args.json {
+        println!("{}", serde_json::to_string_pretty(&manifests)?);
+    } else {
+        let next = if args.realisations == 1 { base.display().to_string() } else { format!("{}/seed-*", base.display()) };
+        eprintln!("\nnext: ballast-gpr run {next}");
+    }
+    Ok(())
+}
+
+/// Builds one folder.
+///
+/// # Errors
+/// When the scene cannot be built or written.
+pub fn build_folder(spec: &SceneSpec, target: &Path, template: Option<(String, String)>, force: bool) -> Result<Manifest, CliError> {
+    let scene = scene::resolve(spec)?;
+    let started = Instant::now();
+    let model = raster::build_model(&scene)?;
+    let painted = model::paint(&model)?;
+    if let Some(resolution) = model::Resolution::of(&model, &painted) {
+        resolution.check()?;
+        if resolution.is_coarse() {
+            eprintln!("warning: {resolution}");
+        }
+    }
+    let raster_seconds = started.elapsed().as_secs_f64();
+    folder::prepare(target, force)?;
+    let started = Instant::now();
+    files::write_bytes(&target.join(folder::SCENE), scene.spec.to_toml()?.as_bytes())?;
+    pack::write_packing(&scene, target)?;
+    gprmax::write_input(&model, target, "model", &InputOptions { template })?;
+    map_figure::write(&scene, &model, &painted, target)?;
+    let seconds = Seconds { packing: scene.packing_seconds, raster: raster_seconds, writing: started.elapsed().as_secs_f64() };
+    let manifest = Manifest::of(&scene, &model, &painted, seconds)?;
+    manifest.write(&target.join(folder::MANIFEST))?;
+    Ok(manifest)
+}
+
+fn default_folder(spec: &SceneSpec, realisations: u32) -> PathBuf {
+    let what = match spec.fouling.as_ref().map(|fouling| fouling.amount) {
+        None => "clean".to_string(),
+        Some(FoulingAmount::Height(height)) => format!("fouling-{}", height.in_unit("cm").replace(' ', "")),
+        Some(amount) => format!("fouling-{amount}").replace(' ', "-").replace('%', "pc"),
+    };
+    if realisations == 1 { format!("tank-{what}-seed-{}", spec.seed).into() } else { format!("tank-{what}").into() }
+}

@@ -1,0 +1,185 @@
+//! `cost`: what accuracy costs in time, measured on this machine.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use crate::cli::cost_choice;
+use crate::cli::error::CliError;
+use crate::cli::explain::human_bytes;
+use crate::cli::folder;
+use crate::cli::interrupt;
+use crate::cli::progress::Bar;
+use crate::cli::table::Report;
+use crate::fdtd::{self, Fdtd, Precision};
+use crate::files;
+use crate::forward::Progress;
+use crate::gprmax;
+use crate::plot::{Axis, Chart, Figure as _, Series, Stroke};
+use crate::scene::Smoothing;
+use crate::study::{CostPoint, CostScene, CostSolver, CostTable, cost_curve};
+use crate::units::Metres;
+
+/// Measure error against time and memory, and draw the curve.
+#[derive(Debug, Clone, Args)]
+pub struct CostArgs {
+    /// Which solver.
+    #[arg(value_enum)]
+    pub solver: CostName,
+    /// Finest cell; the others are its doubles up to 8 mm. Half a millimetre takes minutes.
+    #[arg(long, value_name = "LENGTH", default_value = "0.5mm")]
+    pub finest: Metres,
+    /// Folder for table (CSV, JSON) and figure [default: none are written].
+    #[arg(long, value_name = "FOLDER")]
+    pub out: Option<PathBuf>,
+    /// Keep the table in the cache folder, where `build --tolerance` reads it.
+    #[arg(long)]
+    pub keep: bool,
+    /// Overwrite files that are there.
+    #[arg(long)]
+    pub force: bool,
+    /// Print as JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// The solvers that have a cost curve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum CostName {
+    /// The built-in solver in two dimensions.
+    Fdtd2d,
+}
+
+/// Coarsest cell of the curve.
+const COARSEST: f64 = 0.008;
+
+/// Runs the subcommand.
+///
+/// # Errors
+/// When a run fails or a file cannot be written.
+pub fn run(args: &CostArgs) -> Result<(), CliError> {
+    let mut cells = vec![Metres(COARSEST)];
+    while let Some(last) = cells.last().map(|cell| cell.si()).filter(|cell| cell / 2.0 >= args.finest.si() * (1.0 - 1e-9)) {
+        cells.push(Metres(last / 2.0));
+    }
+    if let Some(folder) = &args.out {
+        folder::prepare(folder, args.force)?;
+    }
+    let (single, double) = (Fdtd::default(), Fdtd { precision: Precision::Double, ..Fdtd::default() });
+    let bytes = |model: &crate::model::Model| {
+        let painted = crate::model::paint(model).ok();
+        painted.and_then(|painted| fdtd::predict(model, &painted, None).ok()).map_or(0, |prediction| prediction.bytes)
+    };
+    let twice = |model: &crate::model::Model| 2 * bytes(model);
+    let solvers = [
+        CostSolver { solver: &single, double_precision: false, bytes: &bytes },
+        CostSolver { solver: &double, double_precision: true, bytes: &twice },
+    ];
+    let bar = Bar::new("cost curve");
+    let on_point = |done, total| {
+        let _ = bar.update(Progress { done, total });
+    };
+    let table = cost_curve(&CostScene::standard()?, &cells, &solvers, &on_point, &|_| interrupt::flow())?;
+    drop(bar);
+    let json = serde_json::to_string_pretty(&table)? + "\n";
+    if let Some(folder) = &args.out {
+        files::write_bytes(&folder.join("cost-fdtd2d.json"), json.as_bytes())?;
+        files::write_bytes(&folder.join("cost-fdtd2d.csv"), csv(&table).as_bytes())?;
+        figure(&table).write(folder, "cost-fdtd2d")?;
+    }
+    if args.keep {
+        let folder = gprmax::install::cache_folder()?;
+        files::create_folder(&folder)?;
+        files::write_bytes(&folder.join(cost_choice::OWN_TABLE), json.as_bytes())?;
+    }
+    if args.json {
+        print!("{json}");
+    } else {
+        print(&table);
+    }
+    Ok(())
+}
+
+fn smoothing(point: &CostPoint) -> &'static str {
+    match point.setting.smoothing {
+        Smoothing::None => "staircase",
+        Smoothing::Edges => "edges",
+        Smoothing::Area => "area",
+    }
+}
+
+fn precision(point: &CostPoint) -> &'static str {
+    if point.setting.double_precision { "double" } else { "single" }
+}
+
+fn csv(table: &CostTable) -> String {
+    let mut text = String::from("cell_mm,smoothing,precision,error_percent,seconds,bytes,cell_steps\n");
+    for point in &table.points {
+        text.push_str(&format!(
+            "{},{},{},{},{},{},{}\n",
+            1e3 * point.setting.cell.si(),
+            smoothing(point),
+            precision(point),
+            100.0 * point.error,
+            point.seconds,
+            point.bytes,
+            point.cell_steps
+        ));
+    }
+    text
+}
+
+fn print(table: &CostTable) {
+    let mut report = Report::new(
+        "Error of the echoes (relative L2) against the extrapolated trace, tank with 20 cm of fouling, 1 GHz",
+        ["cell, mm", "smoothing", "precision", "error, %", "seconds", "memory", "cell-steps"],
+    );
+    for point in &table.points {
+        report.row([
+            format!("{}", 1e3 * point.setting.cell.si()),
+            smoothing(point).into(),
+            precision(point).into(),
+            format!("{:.3}", 100.0 * point.error),
+            format!("{:.3}", point.seconds),
+            human_bytes(point.bytes),
+            format!("{:.2e}", point.cell_steps as f64),
+        ]);
+    }
+    report.print();
+    println!(
+        "order of convergence of the area-smoothed traces: {:.2}; the two finest differ by {:.2} %",
+        table.measured_order,
+        100.0 * table.finest_difference
+    );
+}
+
+fn figure(table: &CostTable) -> Chart {
+    let mut chart = Chart::new(
+        "What accuracy costs: tank with 20 cm of fouling, 1 GHz",
+        Axis::log10("wall time", "s"),
+        Axis::log10("error of the echoes", "%"),
+    );
+    for (index, (kind, name)) in
+        [(Smoothing::None, "staircase"), (Smoothing::Edges, "edge means"), (Smoothing::Area, "area means")].into_iter().enumerate()
+    {
+        for (double, style) in [(false, Stroke::LineAndPoints), (true, Stroke::Points)] {
+            let points: Vec<(f64, f64)> = table
+                .points
+                .iter()
+                .filter(|point| point.setting.smoothing == kind && point.setting.double_precision == double)
+                .map(|point| (point.seconds, 100.0 * point.error))
+                .collect();
+            let label = format!("{name}, {}", if double { "double" } else { "single" });
+            chart.series.push(Series::line(&label, points).drawn(style, index + 3 * usize::from(double)));
+        }
+    }
+    for point in table.points.iter().filter(|p| !p.setting.double_precision && p.setting.smoothing == Smoothing::Area) {
+        chart.markers.push(crate::plot::Marker {
+            x: point.seconds,
+            y: 100.0 * point.error,
+            label: point.setting.cell.in_unit("mm"),
+            colour: 2,
+        });
+    }
+    chart
+}

@@ -1,0 +1,170 @@
+//! `explain`: what will be simulated and why, what is left out and why, memory and predicted time.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::cli::error::CliError;
+use crate::cli::folder;
+use crate::cli::scene_args::SceneArgs;
+use crate::cli::table::Report;
+use crate::fdtd;
+use crate::gprmax;
+use crate::model::{self, Effects, Model};
+use crate::raster;
+use crate::scene::{self, Scene, SceneSpec};
+
+/// Explain a scene before anything runs.
+#[derive(Debug, Clone, Args)]
+pub struct ExplainArgs {
+    /// A folder written by `build`, a scene file, or a gprMax input file; without one the preset `tank`.
+    #[arg(value_name = "FOLDER|SCENE.toml|FILE.in")]
+    pub target: Option<PathBuf>,
+    #[command(flatten)]
+    pub args: SceneArgs,
+    /// Threads that the prediction is for [default: all cores].
+    #[arg(long, value_name = "NUM")]
+    pub threads: Option<NonZeroUsize>,
+    /// Print as JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Runs the subcommand.
+///
+/// # Errors
+/// When the target cannot be read or the scene resolved.
+pub fn run(args: &ExplainArgs) -> Result<(), CliError> {
+    let is_input = args.target.as_ref().is_some_and(|path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("in")));
+    let (scene, model) = if let (true, Some(path)) = (is_input, &args.target) {
+        (None, gprmax::read_model(path)?)
+    } else {
+        let file = args.target.as_ref().map(|path| if path.is_dir() { path.join(folder::SCENE) } else { path.clone() });
+        let spec: SceneSpec = args.args.spec(file.as_deref())?;
+        let scene = scene::resolve(&spec)?;
+        let model = raster::build_model(&scene)?;
+        (Some(scene), model)
+    };
+    let painted = model::paint(&model)?;
+    let effects = Effects::of(&model, &painted);
+    let prediction = fdtd::predict(&model, &painted, args.threads)?;
+    let resolution = model::Resolution::of(&model, &painted);
+    if args.json {
+        let value = serde_json::json!({
+            "bulk_permittivity": scene.as_ref().map(|scene| &scene.bulk),
+            "layers": scene.as_ref().map(|scene| &scene.layers),
+            "arrivals": scene.as_ref().map(|scene| &scene.arrivals),
+            "fouling": scene.as_ref().and_then(|scene| scene.fouling.as_ref()),
+            "cells": model.grid.cells,
+            "time_step_s": model.time_step(),
+            "iterations": model.iterations(),
+            "effects": effects.list,
+            "memory_bytes": prediction.bytes,
+            "predicted_seconds": prediction.seconds,
+            "cells_per_shortest_wavelength": resolution.as_ref().map(|resolution| resolution.cells_per_wavelength),
+        });
+        println!("{}", serde_json::to_string_pretty(&value)?);
+        return Ok(());
+    }
+    if let Some(scene) = &scene {
+        print_scene(scene);
+    }
+    print_model(&model);
+    let mut table = Report::new("Effects", ["effect", "", "why", "memory"]);
+    for effect in &effects.list {
+        let memory = if effect.bytes > 0 { human_bytes(effect.bytes) } else { "–".into() };
+        table.row([effect.name.to_string(), if effect.on { "on" } else { "off" }.into(), effect.reason.clone(), memory]);
+    }
+    table.print();
+    if let Some(resolution) = &resolution {
+        println!(
+            "resolution: {:.1} cells per shortest wavelength ({:.1} mm in `{}` at {:.2} GHz)",
+            resolution.cells_per_wavelength,
+            1e3 * resolution.wavelength.si(),
+            resolution.material,
+            1e-9 * resolution.frequency.si()
+        );
+    }
+    println!("memory: {}", human_bytes(prediction.bytes));
+    println!(
+        "predicted time of the built-in solver: {:.2} s for {:.2e} cell-steps",
+        prediction.seconds, prediction.cell_steps as f64
+    );
+    if let Some(resolution) = resolution.filter(model::Resolution::is_coarse) {
+        eprintln!("warning: {resolution}");
+    }
+    Ok(())
+}
+
+fn print_scene(scene: &Scene) {
+    let spec = &scene.spec;
+    println!("{} (seed {})\n", spec.title, spec.seed);
+    let mut table = Report::new(
+        "Bulk permittivity: a 3-D mixture and a 2-D section (Ez along the stones) are not the same medium",
+        ["zone", "solid %", "3-D mixture", "2-D, true stone", "stone in the model", "2-D as modelled"],
+    );
+    for zone in &scene.bulk {
+        table.row([
+            zone.zone.into(),
+            format!("{:.1}", 100.0 * zone.solid_share),
+            format!("{:.3}", zone.mixture),
+            format!("{:.3}", zone.two_dimensional),
+            format!("{:.3}", zone.stone_in_model),
+            format!("{:.3}", zone.two_dimensional_in_model),
+        ]);
+    }
+    table.print();
+    println!(
+        "The model as it is answers \"what would a trace over this 2-D section look like\"; with `--equivalent-2d` it answers\n\
+         \"when do the echoes of the real, three-dimensional bed arrive\".\n"
+    );
+    let mut table = Report::new("Arrivals of a plane wave through the mixture, from the emission", ["echo", "ns"]);
+    table.row(["surface".into(), format!("{:.3}", 1e9 * scene.arrivals.surface.si())]);
+    for (layer, time) in &scene.arrivals.interfaces {
+        table.row([format!("bottom of {layer}"), format!("{:.3}", 1e9 * time.si())]);
+    }
+    table.row(["metal plate".into(), format!("{:.3}", 1e9 * scene.arrivals.plate.si())]);
+    table.print();
+    if let Some(fouling) = &scene.fouling {
+        let mut table = Report::new("Fouling", ["measure", "nominal bed", "this packing"]);
+        let (a, b) = (&fouling.nominal, fouling.of_packing.as_ref());
+        let mut row = |name: &str, of: &dyn Fn(&crate::material::FoulingIndices) -> String| {
+            table.row([name.into(), of(a), b.map_or("–".into(), of)]);
+        };
+        row("height, % of the bed", &|i| format!("{:.1}", i.height_percent));
+        row("percentage void contamination", &|i| format!("{:.1}", i.percentage_void_contamination));
+        row("void contaminant index", &|i| format!("{:.1}", i.void_contaminant_index));
+        row("relative ballast fouling ratio", &|i| format!("{:.1} ({})", i.relative_ballast_fouling_ratio, i.relative_class.name()));
+        row("Selig's fouling index", &|i| match (i.selig, i.selig_class) {
+            (Some(index), Some(class)) => format!("{index:.1} ({})", class.name()),
+            _ => "–".into(),
+        });
+        row("mass, % of stones and fines", &|i| format!("{:.1}", i.mass_percent));
+        row("volume, % of the bed", &|i| format!("{:.1}", i.volume_percent));
+        table.print();
+        println!("volume, % of bed and base plate (Benedetto 2017, Table 4): {:.1}\n", fouling.volume_percent_of_column);
+    }
+}
+
+fn print_model(model: &Model) {
+    let [nx, ny, nz] = model.grid.cells;
+    println!(
+        "grid: {nx} x {ny} x {nz} cells of {} mm, {} steps of {:.4} ps\n",
+        model.grid.spacing.map(|d| format!("{}", 1e3 * d)).join(" x "),
+        model.iterations(),
+        1e12 * model.time_step()
+    );
+}
+
+/// Bytes as people read them.
+pub fn human_bytes(bytes: u64) -> String {
+    let mut value = bytes as f64;
+    for unit in ["B", "kB", "MB", "GB"] {
+        if value < 1000.0 {
+            return if unit == "B" { format!("{value} B") } else { format!("{value:.1} {unit}") };
+        }
+        value /= 1000.0;
+    }
+    format!("{value:.1} TB")
+}

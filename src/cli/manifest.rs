@@ -1,0 +1,166 @@
+//! The manifest of an output folder: what it was made from, and what it came to.
+
+use std::path::Path;
+
+use crate::cli::error::CliError;
+use crate::cli::folder;
+use crate::files;
+use crate::model::{Effects, Model, Painted};
+use crate::scene::{Arrivals, BulkPermittivity, FoulingReport, Layer, Scene, SceneSpec};
+
+/// Wall times of a build, s. The only figures of a folder that differ between two builds of the same scene.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Seconds {
+    /// Sizing, positioning and compaction.
+    pub packing: f64,
+    /// From discs to cells and edges.
+    pub raster: f64,
+    /// Writing files and figures.
+    pub writing: f64,
+}
+
+/// What the packing came to.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct PackingFigures {
+    /// Number of stones.
+    pub stones: usize,
+    /// Height of the highest stone's top, m.
+    pub height_m: f64,
+    /// Solid share of the rectangle up to that height, %.
+    pub solid_percent: f64,
+    /// Solid share in the interior, away from floor and rough surface, %.
+    pub interior_solid_percent: f64,
+}
+
+/// Time window in which an echo is to be looked for, s, from the start of the trace.
+pub type Window = [f64; 2];
+
+/// Where the echoes of a scene are to be looked for.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct ExpectedWindows {
+    /// Peak of the emitted pulse, s.
+    pub pulse_delay: f64,
+    /// Echo of the bed's surface.
+    pub surface: Window,
+    /// Echo of the metal plate.
+    pub plate: Option<Window>,
+}
+
+impl ExpectedWindows {
+    /// Windows around the arrivals of the layered bed: from 0.6 periods before to one after the surface's, and for the plate
+    /// from half a period before the fastest bed (mixture) to one after the slowest (2-D bed of true stones).
+    pub fn of(scene: &Scene) -> Self {
+        let period = 1.0 / scene.spec.antenna.frequency.si();
+        let pulse_delay = std::f64::consts::SQRT_2 * period;
+        let at = |travel: f64| pulse_delay + travel;
+        let surface = scene.arrivals.surface.si();
+        let slow = scene.slowest_delay().si();
+        let plate = (scene.arrivals.plate.si() - 0.5 * period, surface + slow + period);
+        Self {
+            pulse_delay,
+            surface: [at(surface - 0.6 * period), at(surface + period)],
+            plate: scene.spec.tank.metal_plate.then(|| [at(plate.0), at(plate.1)]),
+        }
+    }
+}
+
+/// What an output folder holds.
+#[derive(Debug, Clone, serde::Serialize)]
+pub struct Manifest {
+    /// Version of this file's format.
+    pub format_version: u32,
+    /// Program, version and commit.
+    pub program: String,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// The resolved scene, as in `scene.toml`.
+    pub scene: SceneSpec,
+    /// What the packing came to; absent for a homogeneous bed.
+    pub packing: Option<PackingFigures>,
+    /// The fouling in every measure; absent for clean ballast.
+    pub fouling: Option<FoulingReport>,
+    /// Bulk permittivities, as a mixture and as a 2-D section behaves.
+    pub bulk_permittivity: Vec<BulkPermittivity>,
+    /// The layers that the arrivals are for.
+    pub layers: Vec<Layer>,
+    /// When a plane wave's echoes would arrive, from the emission.
+    pub arrivals: Arrivals,
+    /// Where the echoes are to be looked for in a trace.
+    pub expected: ExpectedWindows,
+    /// Cells along x, y, z.
+    pub cells: [usize; 3],
+    /// Time step, s.
+    pub time_step: f64,
+    /// Samples per trace.
+    pub iterations: usize,
+    /// What will be simulated, and why.
+    pub effects: Effects,
+    /// Wall times.
+    pub seconds: Seconds,
+}
+
+impl Manifest {
+    /// Collects the figures of a built scene.
+    ///
+    /// # Errors
+    /// Never at present; kept fallible for figures that may not exist.
+    pub fn of(scene: &Scene, model: &Model, painted: &Painted, seconds: Seconds) -> Result<Self, CliError> {
+        Ok(Self {
+            format_version: 1,
+            program: folder::program(),
+            seed: scene.spec.seed,
+            scene: scene.spec.clone(),
+            packing: scene.packing.as_ref().map(|packing| PackingFigures {
+                stones: packing.discs.len(),
+                height_m: packing.top().si(),
+                solid_percent: 100.0 * packing.solid_share().si(),
+                interior_solid_percent: 100.0 * packing.interior_solid_share().si(),
+            }),
+            fouling: scene.fouling.clone(),
+            bulk_permittivity: scene.bulk.clone(),
+            layers: scene.layers.clone(),
+            arrivals: scene.arrivals.clone(),
+            expected: ExpectedWindows::of(scene),
+            cells: model.grid.cells,
+            time_step: model.time_step(),
+            iterations: model.iterations(),
+            effects: Effects::of(model, painted),
+            seconds,
+        })
+    }
+
+    /// One line for people.
+    pub fn summary(&self) -> String {
+        let stones = self.packing.as_ref().map_or("homogeneous bed".to_string(), |packing| {
+            format!("{} stones, {:.1} cm, {:.1} % solid", packing.stones, 100.0 * packing.height_m, packing.solid_percent)
+        });
+        let fouling = self.fouling.as_ref().map_or("clean".to_string(), |f| format!("fouled to {}", f.height.in_unit("cm")));
+        format!("{stones}, {fouling}, {} x {} cells", self.cells[0], self.cells[1])
+    }
+
+    /// Writes the manifest.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), CliError> {
+        let mut text = serde_json::to_string_pretty(self)?;
+        text.push('\n');
+        Ok(files::write_bytes(path, text.as_bytes())?)
+    }
+}
+
+/// Reads the echo windows out of a folder's manifest.
+///
+/// # Errors
+/// When there is no manifest or it holds none.
+pub fn expected_windows(folder: &Path) -> Result<ExpectedWindows, CliError> {
+    #[derive(serde::Deserialize)]
+    struct Part {
+        expected: ExpectedWindows,
+    }
+    let path = folder.join(folder::MANIFEST);
+    let text = files::read_text(&path)?;
+    let part: Part = serde_json::from_str(&text)
+        .map_err(|error| CliError::input(format!("the manifest `{}` cannot be read: {error}", path.display())))?;
+    Ok(part.expected)
+}

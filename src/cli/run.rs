@@ -1,0 +1,225 @@
+//! `run`: simulate a folder or a gprMax input file.
+
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::{Args, ValueEnum};
+
+use crate::cli::batch;
+use crate::cli::error::CliError;
+use crate::cli::folder::{self, RunRecord};
+use crate::cli::progress::Bar;
+use crate::fdtd::{Fdtd, Precision};
+use crate::gprmax;
+
+/// Simulate folders written by `build`, or anybody's gprMax input files.
+#[derive(Debug, Clone, Args)]
+pub struct RunArgs {
+    /// Folders written by `build`, or `.in` files. Several run side by side, one process per free core; results that are
+    /// already there are kept, a failure is reported and the rest goes on.
+    #[arg(required = true, value_name = "FOLDER|FILE.in")]
+    pub targets: Vec<PathBuf>,
+    /// `fdtd`: built in, 2-D. `gprmax`: runs the real gprMax (see `ballast-gpr gprmax install`).
+    #[arg(long, value_enum, default_value = "fdtd")]
+    pub solver: SolverName,
+    /// Threads of one run [default: all cores for one target, one for each of several].
+    #[arg(long, value_name = "NUM")]
+    pub threads: Option<NonZeroUsize>,
+    /// Runs side by side when there are several targets [default: the number of free cores].
+    #[arg(long, value_name = "NUM")]
+    pub jobs: Option<NonZeroUsize>,
+    /// Floating-point numbers of the fields.
+    #[arg(long, value_enum, default_value = "single")]
+    pub precision: PrecisionName,
+    /// Result file, for a single target [default: FOLDER/fdtd.h5 or FOLDER/gprmax.h5, FILE.h5 beside FILE.in].
+    #[arg(long, value_name = "FILE.h5")]
+    pub out: Option<PathBuf>,
+    /// Compute again and overwrite a result that is there.
+    #[arg(long)]
+    pub force: bool,
+    /// Python interpreter that has gprMax, in place of the private one.
+    #[arg(long, value_name = "PYTHON", env = "BALLAST_GPR_GPRMAX_PYTHON")]
+    pub gprmax_python: Option<PathBuf>,
+    /// Print the outcome as JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Which solver.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum SolverName {
+    /// The built-in solver.
+    Fdtd,
+    /// Real gprMax.
+    Gprmax,
+}
+
+impl SolverName {
+    /// The word on the command line and in file names.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fdtd => "fdtd",
+            Self::Gprmax => "gprmax",
+        }
+    }
+}
+
+/// Which floating-point numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum PrecisionName {
+    /// 32 bits.
+    Single,
+    /// 64 bits.
+    Double,
+}
+
+impl PrecisionName {
+    /// The word on the command line and in records.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Single => "single",
+            Self::Double => "double",
+        }
+    }
+}
+
+/// What one run came to.
+#[derive(Debug, Clone, serde::Serialize)]
+pub struct Outcome {
+    /// Folder or file that was run.
+    pub target: PathBuf,
+    /// The result.
+    pub result: PathBuf,
+    /// Whether it was there already.
+    pub kept: bool,
+    /// What made it and how long that took.
+    pub record: RunRecord,
+}
+
+/// Runs the subcommand.
+///
+/// # Errors
+/// When a run fails; with several targets, after the others have finished.
+pub fn run(args: &RunArgs) -> Result<(), CliError> {
+    if args.targets.len() > 1 {
+        if args.out.is_some() {
+            return Err(CliError::input("`--out` names one file, but there are several targets\n\nhint: leave `--out` out; each result goes into its folder"));
+        }
+        return batch::run_many(args);
+    }
+    let outcome = run_one(args, &args.targets[0])?;
+    if args.json {
+        println!("{}", serde_json::to_string_pretty(&outcome)?);
+    } else {
+        let record = &outcome.record;
+        let how = if outcome.kept { "was there already" } else { "written" };
+        println!("{} {how}: {} in {:.2} s", outcome.result.display(), record.solver, record.wall_seconds);
+    }
+    Ok(())
+}
+
+/// Runs one target in this process.
+///
+/// # Errors
+/// When the target cannot be read, the result may not be overwritten, or the solver fails.
+pub fn run_one(args: &RunArgs, target: &Path) -> Result<Outcome, CliError> {
+    let (input, result) = paths(args, target)?;
+    let fingerprint = folder::model_fingerprint(&input)?;
+    if result.exists() && !args.force {
+        let same = |record: &RunRecord| {
+            record.model == fingerprint && record.solver == args.solver.name() && record.precision == args.precision.name()
+        };
+        if let Some(record) = RunRecord::beside(&result).filter(same) {
+            return Ok(Outcome { target: target.into(), result, kept: true, record });
+        }
+        folder::may_write(&result, false)?;
+    }
+    let started = Instant::now();
+    let loop_seconds = match args.solver {
+        SolverName::Fdtd => run_fdtd(args, &input, &result)?,
+        SolverName::Gprmax => run_gprmax(args, &input, &result)?,
+    };
+    let record = RunRecord {
+        format_version: 1,
+        program: folder::program(),
+        solver: args.solver.name().into(),
+        precision: args.precision.name().into(),
+        threads: args.threads.map(NonZeroUsize::get),
+        model: fingerprint,
+        wall_seconds: started.elapsed().as_secs_f64(),
+        loop_seconds,
+    };
+    record.write_beside(&result)?;
+    Ok(Outcome { target: target.into(), result, kept: false, record })
+}
+
+/// The input file and the result of a target.
+fn paths(args: &RunArgs, target: &Path) -> Result<(PathBuf, PathBuf), CliError> {
+    let (input, default) = if target.is_dir() {
+        if !folder::is_built(target) {
+            return Err(CliError::input(format!(
+                "`{}` holds no complete model (`{}` and `{}`)\n\nhint: make one with `ballast-gpr build --out {0}`",
+                target.display(),
+                folder::MODEL,
+                folder::MANIFEST
+            )));
+        }
+        (target.join(folder::MODEL), target.join(format!("{}.h5", args.solver.name())))
+    } else if target.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("in")) {
+        (target.to_path_buf(), target.with_extension("h5"))
+    } else {
+        return Err(CliError::input(format!(
+            "`{}` is neither a folder nor a gprMax input file (.in)\n\nhint: `ballast-gpr build` makes a folder, then `ballast-gpr run FOLDER`",
+            target.display()
+        )));
+    };
+    if !input.is_file() {
+        return Err(CliError::input(format!("`{}` does not exist", input.display())));
+    }
+    Ok((input, args.out.clone().unwrap_or(default)))
+}
+
+fn run_fdtd(args: &RunArgs, input: &Path, result: &Path) -> Result<Option<f64>, CliError> {
+    let read = gprmax::read_input(input)?;
+    for note in &read.notes {
+        eprintln!("note: {note}");
+    }
+    let solver = Fdtd {
+        precision: match args.precision {
+            PrecisionName::Single => Precision::Single,
+            PrecisionName::Double => Precision::Double,
+        },
+        threads: args.threads,
+        ..Fdtd::default()
+    };
+    let bar = Bar::new("simulating");
+    let (traces, stats) = solver.solve_stats(&read.model, &|progress| bar.update(progress))?;
+    drop(bar);
+    gprmax::write_traces(result, &traces, &read.model)?;
+    Ok(Some(stats.wall.si()))
+}
+
+fn run_gprmax(args: &RunArgs, input: &Path, result: &Path) -> Result<Option<f64>, CliError> {
+    let solver = gprmax_solver(args.gprmax_python.as_deref(), args.precision, args.threads)?;
+    let bar = Bar::new("gprMax");
+    let run = solver.run_file(input, result, &|progress| bar.update(progress))?;
+    Ok(run.loop_seconds)
+}
+
+/// Finds gprMax and sets it up for a run.
+///
+/// # Errors
+/// When it is not installed.
+pub fn gprmax_solver(
+    python: Option<&Path>,
+    precision: PrecisionName,
+    threads: Option<NonZeroUsize>,
+) -> Result<gprmax::GprMax, CliError> {
+    let python = gprmax::install::find(python)?;
+    Ok(gprmax::GprMax {
+        python,
+        threads: threads.map(NonZeroUsize::get),
+        double_precision: precision == PrecisionName::Double,
+    })
+}

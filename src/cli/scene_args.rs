@@ -1,0 +1,168 @@
+//! The flags that describe a scene, and how they change a scene file.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use crate::cli::error::CliError;
+use crate::packing::{ClassReading, Grading, PackingError};
+use crate::scene::{
+    EquivalentStone, FoulingAmount, FoulingSpec, GeometryKind, GradingSpec, PackingMethod, SceneSpec, Smoothing,
+};
+use crate::units::{Hertz, Metres, Seconds, Share};
+
+/// What a scene is made of. Everything here can stand in the scene file as well; a flag wins over the file.
+#[derive(Debug, Clone, Default, Args)]
+#[command(next_help_heading = "Scene")]
+pub struct SceneArgs {
+    /// Built-in scene to start from: `tank` is the laboratory tank of Benedetto et al. 2018.
+    #[arg(long, value_name = "NAME")]
+    pub preset: Option<String>,
+    /// Fouling: a height from the bottom (20cm), "40% of voids", "16% by volume" or "14% by mass".
+    #[arg(long, value_name = "AMOUNT", allow_hyphen_values = true)]
+    pub fouling: Option<FoulingAmount>,
+    /// Water added to the fines, share of their volume (5%).
+    #[arg(long, value_name = "SHARE")]
+    pub moisture: Option<Share>,
+    /// Void share of the bed (42%).
+    #[arg(long, value_name = "SHARE", allow_hyphen_values = true)]
+    pub voids: Option<Share>,
+    /// Sieve curve: a name (benedetto2018, en13450-a, arema-4a, ...) or a CSV file `sieve_mm,passing_percent`.
+    #[arg(long, value_name = "NAME|FILE")]
+    pub grading: Option<String>,
+    /// Which sizes a retained fraction fills: `en-933-1` (between its sieve and the next larger one) or `one-sieve-up`.
+    #[arg(long, value_name = "READING")]
+    pub class_reading: Option<String>,
+    /// Discs to use in place of a new packing: CSV `x,y,radius` in metres, or JSON written by `pack`.
+    #[arg(long, value_name = "FILE")]
+    pub packing: Option<PathBuf>,
+    /// No stones: each layer holds the effective permittivity of its mixture.
+    #[arg(long, conflicts_with = "packing")]
+    pub homogeneous: bool,
+    /// Stones carry the permittivity with which a 2-D bed delays a wave as the 3-D mixture would (see `explain`).
+    #[arg(long)]
+    pub equivalent_2d: bool,
+    /// Seed of everything random [default: 1].
+    #[arg(long, value_name = "NUM")]
+    pub seed: Option<u64>,
+    /// Centre frequency of the pulse [default: 1 GHz].
+    #[arg(long, value_name = "FREQUENCY")]
+    pub frequency: Option<Hertz>,
+    /// Cell size [default: 2 mm].
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    pub cell: Option<Metres>,
+    /// Time window [default: 25 ns].
+    #[arg(long, value_name = "TIME")]
+    pub time_window: Option<Seconds>,
+    /// How stones become cells: true centres in a block of cells, or `#cylinder` lines with centres snapped to the grid.
+    #[arg(long, value_enum)]
+    pub geometry: Option<Geometry>,
+    /// Where materials meet: a staircase, each edge the mean of its four cells, or each cell the mean over its area.
+    #[arg(long, value_enum)]
+    pub smoothing: Option<SmoothingFlag>,
+}
+
+/// See [`GeometryKind`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Geometry {
+    /// A block of cells with true centres.
+    Voxels,
+    /// `#cylinder` lines.
+    Cylinders,
+}
+
+/// See [`Smoothing`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum SmoothingFlag {
+    /// A staircase.
+    None,
+    /// Edge means, gprMax's default.
+    Edges,
+    /// Area means in each cell, then edge means.
+    Area,
+}
+
+impl SceneArgs {
+    /// The scene of a file (or of the preset) with these flags applied.
+    ///
+    /// # Errors
+    /// When the file, the preset, the grading or a reading cannot be used.
+    pub fn spec(&self, file: Option<&std::path::Path>) -> Result<SceneSpec, CliError> {
+        let mut spec = match (file, &self.preset) {
+            (Some(file), None) => SceneSpec::read(file)?,
+            (None, preset) => SceneSpec::preset(preset.as_deref().unwrap_or("tank"))?,
+            (Some(_), Some(_)) => {
+                return Err(CliError::input("a scene file and `--preset` were both given\n\nhint: leave one of them out"));
+            }
+        };
+        self.apply(&mut spec)?;
+        Ok(spec)
+    }
+
+    fn apply(&self, spec: &mut SceneSpec) -> Result<(), CliError> {
+        if let Some(amount) = &self.fouling {
+            match &mut spec.fouling {
+                Some(fouling) => fouling.amount = *amount,
+                None => spec.fouling = Some(FoulingSpec::of(*amount)),
+            }
+        }
+        if let Some(share) = self.moisture {
+            spec.moisture.get_or_insert_default().fines = share;
+        }
+        if let Some(grading) = &self.grading {
+            spec.packing.grading = GradingSpec::Curve(read_grading(grading)?);
+        }
+        if let Some(reading) = &self.class_reading {
+            spec.packing.class_reading = read_reading(reading)?;
+        }
+        if let Some(file) = &self.packing {
+            spec.packing.method = PackingMethod::File;
+            spec.packing.file = Some(file.clone());
+        }
+        if self.homogeneous {
+            spec.packing.method = PackingMethod::Homogeneous;
+        }
+        if self.equivalent_2d {
+            spec.packing.stone_permittivity = EquivalentStone::Equivalent2d;
+        }
+        set(&mut spec.packing.voids, self.voids);
+        set(&mut spec.seed, self.seed);
+        set(&mut spec.antenna.frequency, self.frequency);
+        set(&mut spec.grid.cell, self.cell);
+        set(&mut spec.grid.time_window, self.time_window);
+        set(&mut spec.grid.geometry, self.geometry.map(|geometry| match geometry {
+            Geometry::Voxels => GeometryKind::Voxels,
+            Geometry::Cylinders => GeometryKind::Cylinders,
+        }));
+        set(&mut spec.grid.smoothing, self.smoothing.map(|smoothing| match smoothing {
+            SmoothingFlag::None => Smoothing::None,
+            SmoothingFlag::Edges => Smoothing::Edges,
+            SmoothingFlag::Area => Smoothing::Area,
+        }));
+        Ok(())
+    }
+}
+
+fn set<T>(place: &mut T, value: Option<T>) {
+    if let Some(value) = value {
+        *place = value;
+    }
+}
+
+fn read_grading(text: &str) -> Result<Grading, CliError> {
+    let path = std::path::Path::new(text);
+    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv")) || path.is_file() {
+        return Ok(Grading::from_csv(text, &crate::files::read_text(path)?).map_err(PackingError::from)?);
+    }
+    Ok(Grading::named(text).map_err(PackingError::from)?)
+}
+
+fn read_reading(text: &str) -> Result<ClassReading, CliError> {
+    match text {
+        "en-933-1" => Ok(ClassReading::En933),
+        "one-sieve-up" => Ok(ClassReading::OneSieveUp),
+        _ => Err(CliError::input(format!(
+            "there is no class reading `{text}`\n\nhint: write `--class-reading en-933-1` or `--class-reading one-sieve-up`"
+        ))),
+    }
+}

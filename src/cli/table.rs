@@ -1,0 +1,62 @@
+//! Tables on standard output, and the same as JSON.
+
+use comfy_table::presets::UTF8_HORIZONTAL_ONLY;
+use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table};
+
+/// Width of a table that is not printed on a terminal, characters.
+const WIDTH: u16 = 150;
+
+/// A table to print.
+pub struct Report {
+    title: String,
+    header: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Report {
+    /// A table with a title and column heads.
+    pub fn new<const N: usize>(title: impl Into<String>, header: [&str; N]) -> Self {
+        Self { title: title.into(), header: header.iter().map(ToString::to_string).collect(), rows: vec![] }
+    }
+
+    /// Adds a row.
+    pub fn row<const N: usize>(&mut self, cells: [String; N]) {
+        self.rows.push(cells.into());
+    }
+
+    /// Prints the table on standard output.
+    pub fn print(&self) {
+        println!("{}", self.title);
+        let mut table = Table::new();
+        let rule = LineStyle::none().fill('─').junction('─');
+        let style = UTF8_HORIZONTAL_ONLY.header_separator(rule).row_separator(LineStyle::none());
+        table.load_style(style).set_content_arrangement(ContentArrangement::Dynamic);
+        if table.width().is_none() {
+            table.set_width(WIDTH);
+        }
+        table.set_header(self.header.clone());
+        for row in &self.rows {
+            table.add_row(row.clone());
+        }
+        for (index, column) in table.column_iter_mut().enumerate() {
+            let numeric = self.rows.iter().all(|row| {
+                row.get(index).is_none_or(|cell| cell.is_empty() || cell == "–" || cell.starts_with(|c: char| c.is_ascii_digit() || "+-−".contains(c)))
+            });
+            if index > 0 && numeric {
+                column.set_cell_alignment(CellAlignment::Right);
+            }
+        }
+        println!("{table}");
+    }
+
+    /// The same as Markdown.
+    pub fn markdown(&self) -> String {
+        let line = |cells: &[String]| format!("| {} |\n", cells.iter().map(|c| c.replace('\n', " ")).collect::<Vec<_>>().join(" | "));
+        let mut text = line(&self.header);
+        text.push_str(&format!("|{}\n", "---|".repeat(self.header.len())));
+        for row in &self.rows {
+            text.push_str(&line(row));
+        }
+        text
+    }
+}
