@@ -173,7 +173,19 @@ fn errors_name_the_line_and_what_to_do() {
     );
     assert_eq!(
         error("#box: 0.2 0 0 0.1 0.1 0.002 pec"),
-        "FILE line 4: the lower corner of `#box` is not below its upper corner along x: 0.2 m and 0.1 m"
+        "FILE line 4: `#box` fills no cell along x: it reaches from 0.2 m to 0.1 m"
+    );
+    assert_eq!(
+        error("#box: 0 0 0 0.1 0.1 0.001 pec"),
+        "FILE line 4: `#box` fills no cell along z: it reaches from 0 m to 0.001 m"
+    );
+    assert_eq!(
+        error("#box: 0 0 0 0.5 0.1 0.002 pec"),
+        "FILE line 4: the corner of the box at 0.5 0.1 0.002 m lies outside the domain of 0.4 x 0.3 x 0.002 m"
+    );
+    assert_eq!(
+        error("#waveform: ricker 1 1e9 w\n#hertzian_dipole: x 0.1 0.1 0 w"),
+        "FILE line 5: a source along x in a model of one cell along z: it must point along z"
     );
     assert!(
         error("#geometry_objects_read: 0 0 0 none.h5 mats").contains("none.h5"),

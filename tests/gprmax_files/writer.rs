@@ -250,15 +250,18 @@ fn material(index: usize) -> impl Strategy<Value = Material> {
     )
 }
 
-fn object(materials: u16, spacing: [f64; 3]) -> impl Strategy<Value = Object> {
+fn object(materials: u16, spacing: [f64; 3], cells: (usize, usize)) -> impl Strategy<Value = Object> {
     let id = move || (0..materials).prop_map(MaterialId);
     let point = || prop::array::uniform3(0.0..0.2f64);
-    let cuboid = (point(), prop::array::uniform3(1e-3..0.1f64), id(), any::<bool>()).prop_map(
-        |(lower, size, material, averaging)| {
-            let upper = std::array::from_fn(|axis| lower[axis] + size[axis]);
+    let cuboid =
+        (prop::array::uniform4(0.0..1.0f64), id(), any::<bool>()).prop_map(move |(share, material, averaging)| {
+            // Inside the domain and at least one cell long, as gprMax demands.
+            let extent = [cells.0 as f64 * spacing[0], cells.1 as f64 * spacing[1]];
+            let lower = [0, 1].map(|axis| 0.5 * share[axis] * extent[axis]);
+            let upper = [0, 1].map(|axis| lower[axis] + 1.01 * spacing[axis] + 0.4 * share[axis + 2] * extent[axis]);
+            let (lower, upper) = ([lower[0], lower[1], 0.0], [upper[0], upper[1], spacing[2]]);
             Object::Box { lower, upper, material, averaging }
-        },
-    );
+        });
     let cylinder =
         (point(), point(), 1e-6..0.1f64, id(), any::<bool>()).prop_map(|(start, end, radius, material, averaging)| {
             Object::Cylinder { start, end, radius, material, averaging }
@@ -277,7 +280,7 @@ prop_compose! {
         cells in (25..300usize, 25..300usize), spacing in prop::array::uniform3(1e-4..0.02f64), count in 0..5usize,
     )(
         materials in (0..count).map(material).collect::<Vec<_>>(),
-        objects in prop::collection::vec(object(2 + count as u16, spacing), 0..6),
+        objects in prop::collection::vec(object(2 + count as u16, spacing, cells), 0..6),
         window in prop_oneof![(1e-12..1e-7f64).prop_map(TimeWindow::Seconds), (1..5000usize).prop_map(TimeWindow::Iterations)],
         pml in prop::option::of(prop::array::uniform4(0..12usize)), threads in prop::option::of(1..9usize), factor in 0.01..=1.0f64,
         wave in (proptest::sample::select(WaveformKind::ALL.to_vec()), -10.0..10.0f64, 1e8..5e9f64),

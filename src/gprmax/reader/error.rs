@@ -193,7 +193,7 @@ pub enum Problem {
     /// A position outside the domain.
     #[error("the {what} at {x} {y} {z} m lies outside the domain of {} x {} x {} m", domain[0], domain[1], domain[2])]
     Outside {
-        /// `source` or `receiver`.
+        /// `source`, `receiver` or `corner of the box`.
         what: &'static str,
         /// Position, m.
         x: f64,
@@ -204,15 +204,23 @@ pub enum Problem {
         /// Extents, m.
         domain: [f64; 3],
     },
-    /// A box whose lower corner is above its upper one.
-    #[error("the lower corner of `#box` is not below its upper corner along {axis}: {lower} m and {upper} m")]
-    Corners {
+    /// A box without a cell.
+    #[error("`#box` fills no cell along {axis}: it reaches from {lower} m to {upper} m")]
+    NoCells {
         /// `x`, `y` or `z`.
         axis: &'static str,
         /// Lower coordinate, m.
         lower: f64,
         /// Upper coordinate, m.
         upper: f64,
+    },
+    /// A source across a two-dimensional model.
+    #[error("a source along {polarisation} in a model of one cell along {axis}: it must point along {axis}")]
+    Polarisation {
+        /// Direction of the source.
+        polarisation: &'static str,
+        /// Axis of the single cell.
+        axis: &'static str,
     },
     /// The file of a `#geometry_objects_read` is wrong.
     #[error(transparent)]

@@ -113,6 +113,10 @@ fn hertzian_dipole(model: &mut Model, command: &Command<'_>) -> Result<(), Probl
     let word = p.word(0)?;
     let axis = [Axis::X, Axis::Y, Axis::Z].into_iter().find(|axis| axis.name() == word.to_lowercase());
     let polarisation = axis.ok_or_else(|| p.not_one_of(word, "a polarisation", "x, y, z".into()))?;
+    let invariant = [Axis::X, Axis::Y, Axis::Z].into_iter().find(|a| model.grid.invariant_axis() == Some(a.index()));
+    if let Some(axis) = invariant.filter(|axis| *axis != polarisation) {
+        return Err(Problem::Polarisation { polarisation: polarisation.name(), axis: axis.name() });
+    }
     let position = p.point(1)?;
     inside(model, "source", position)?;
     let id = p.word(4)?;
@@ -158,10 +162,12 @@ fn cuboid(model: &mut Model, command: &Command<'_>) -> Result<(), Problem> {
     let (lower, upper) = (p.point(0)?, p.point(3)?);
     for axis in [Axis::X, Axis::Y, Axis::Z] {
         let (low, high) = (lower[axis.index()], upper[axis.index()]);
-        if low >= high {
-            return Err(Problem::Corners { axis: axis.name(), lower: low, upper: high });
+        if model.grid.node(axis.index(), low) >= model.grid.node(axis.index(), high) {
+            return Err(Problem::NoCells { axis: axis.name(), lower: low, upper: high });
         }
     }
+    inside(model, "corner of the box", lower)?;
+    inside(model, "corner of the box", upper)?;
     let (material, averaging) = stuff(model, &p, 6)?;
     model.objects.push(Object::Box { lower, upper, material, averaging });
     Ok(())
@@ -214,7 +220,7 @@ fn material_id(model: &Model, p: &Parameters<'_>, id: &str) -> Result<MaterialId
     })
 }
 
-/// Sources and receivers must lie on a node of the grid.
+/// Sources, receivers and corners of boxes must lie on a node of the grid.
 fn inside(model: &Model, what: &'static str, position: [f64; 3]) -> Result<(), Problem> {
     let grid = &model.grid;
     let within = |axis: usize| (0..=grid.cells[axis] as i64).contains(&grid.node(axis, position[axis]));
