@@ -21,6 +21,9 @@ pub struct Expected {
     /// Decimals to show.
     #[serde(default = "two")]
     pub decimals: usize,
+    /// Whether the program's figure differs from machine to machine, as a time does.
+    #[serde(default)]
+    pub varies: bool,
 }
 
 const fn two() -> usize {
@@ -111,6 +114,8 @@ pub struct Row {
     pub why: String,
     /// Decimals to show.
     pub decimals: usize,
+    /// Whether the program's figure differs from machine to machine.
+    pub varies: bool,
 }
 
 impl Case {
@@ -153,6 +158,7 @@ impl Case {
                     verdict,
                     why: expected.why.clone(),
                     decimals: expected.decimals,
+                    varies: expected.varies,
                 })
             })
             .collect()

@@ -131,6 +131,10 @@ fn report_of(title: &str, rows: &[Row]) -> Result<CaseReport, CliError> {
             row.verdict.name().into(),
             row.why.clone(),
         ]);
+        if row.varies {
+            table.in_markdown(2, "varies");
+            table.in_markdown(3, "–");
+        }
     }
     let misses = rows.iter().filter(|row| row.verdict == Verdict::Differs).count();
     Ok(CaseReport { title: title.into(), table, json: serde_json::to_value(rows)?, misses })
