@@ -247,7 +247,8 @@ pub fn table(comparison: &Comparison) -> Report {
     };
     let error = |error: &TimeError, envelope: bool| {
         let value = if envelope { error.envelope } else { error.waveform };
-        value.map_or("–".into(), |value| format!("{:+.3}", 1e9 * value.si()))
+        // Adding zero turns a rounded "-0" into "+0".
+        value.map_or("–".into(), |value| format!("{:+.3}", (1e12 * value.si()).round() / 1e3 + 0.0))
     };
     for (name, pick_a, pick_b, found) in [
         ("surface echo", &picks_a.surface, &picks_b.surface, &metrics.surface_time_error),

@@ -38,6 +38,9 @@ pub struct DemoArgs {
     /// Also run real gprMax on both tanks and compare (a minute or two; see `gprmax install`).
     #[arg(long)]
     pub with_gprmax: bool,
+    /// Print the table as JSON.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Runs the subcommand.
@@ -110,6 +113,10 @@ pub fn run(args: &DemoArgs) -> Result<(), CliError> {
         let _ = step(7);
     }
     drop(bar);
+    if args.json {
+        println!("{}", serde_json::to_string_pretty(&table.json())?);
+        return Ok(());
+    }
     table.print();
     if let Some((exact, ours)) = exact {
         println!("\n{}", exact_line(exact, ours));

@@ -13,7 +13,8 @@ use crate::fdtd;
 use crate::gprmax;
 use crate::model::{self, Effects, Model};
 use crate::raster;
-use crate::scene::{self, Scene, SceneSpec};
+use crate::scene::{self, EquivalentStone, Scene, SceneSpec};
+use crate::units::Metres;
 
 /// Explain a scene before anything runs.
 #[derive(Debug, Clone, Args)]
@@ -59,6 +60,9 @@ pub fn run(args: &ExplainArgs) -> Result<(), CliError> {
             "cells": model.grid.cells,
             "time_step_s": model.time_step(),
             "iterations": model.iterations(),
+            "scene_effects": scene.iter().flat_map(scene_effects).map(|(name, on, reason)| serde_json::json!({
+                "name": name, "on": on, "reason": reason
+            })).collect::<Vec<_>>(),
             "effects": effects.list,
             "memory_bytes": prediction.bytes,
             "predicted_seconds": prediction.seconds,
@@ -72,6 +76,9 @@ pub fn run(args: &ExplainArgs) -> Result<(), CliError> {
     }
     print_model(&model);
     let mut table = Report::new("Effects", ["effect", "", "why", "memory"]);
+    for (name, on, why) in scene.iter().flat_map(scene_effects) {
+        table.row([name.into(), if on { "on" } else { "off" }.into(), why, "–".into()]);
+    }
     for effect in &effects.list {
         let memory = if effect.bytes > 0 { human_bytes(effect.bytes) } else { "–".into() };
         table.row([effect.name.to_string(), if effect.on { "on" } else { "off" }.into(), effect.reason.clone(), memory]);
@@ -95,6 +102,31 @@ pub fn run(args: &ExplainArgs) -> Result<(), CliError> {
         eprintln!("warning: {resolution}");
     }
     Ok(())
+}
+
+/// What of the scene itself is in the model, and why: these change materials, not the solver.
+fn scene_effects(scene: &Scene) -> Vec<(&'static str, bool, String)> {
+    let spec = &scene.spec;
+    let fouling = match (&spec.fouling, scene.bed.fouled_height > 0.0) {
+        (Some(fouling), true) => {
+            let height = Metres(scene.bed.fouled_height).in_unit("cm");
+            (true, format!("{} of `{}` fills {} of the voids up to {height}", fouling.amount, fouling.material, fouling.filling))
+        }
+        (Some(fouling), false) => (false, format!("the scene asks for {}", fouling.amount)),
+        (None, _) => (false, "the scene has no `[fouling]`".into()),
+    };
+    let water = spec.moisture.unwrap_or_default();
+    let moisture = match (water.fines.si() > 0.0, water.voids.si() > 0.0) {
+        (false, false) => (false, "the scene adds no water".into()),
+        _ => (true, format!("{} of the fines, {} of the open voids", water.fines, water.voids)),
+    };
+    let equivalent = spec.packing.stone_permittivity == EquivalentStone::Equivalent2d;
+    let why = if equivalent { "`stone_permittivity = \"equivalent-2d\"`" } else { "`stone_permittivity = \"true\"`" };
+    vec![
+        ("fouling", fouling.0, fouling.1),
+        ("moisture", moisture.0, moisture.1),
+        ("2-D equivalent stone", equivalent, why.into()),
+    ]
 }
 
 fn print_scene(scene: &Scene) {

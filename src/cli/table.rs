@@ -56,6 +56,14 @@ impl Report {
         println!("{table}");
     }
 
+    /// The same as JSON: one object per row, by column heads.
+    pub fn json(&self) -> serde_json::Value {
+        let row = |cells: &Vec<String>| {
+            self.header.iter().cloned().zip(cells.iter().cloned().map(Into::into)).collect::<serde_json::Map<_, _>>().into()
+        };
+        self.rows.iter().map(row).collect::<Vec<serde_json::Value>>().into()
+    }
+
     /// The same as Markdown.
     pub fn markdown(&self) -> String {
         let line = |cells: &[String]| format!("| {} |\n", cells.iter().map(|c| c.replace('\n', " ")).collect::<Vec<_>>().join(" | "));

@@ -1,13 +1,9 @@
-//! `cost`: what accuracy costs in time, measured on this machine.
+//! The cost curve of the built-in solver in two dimensions.
 
-use std::path::PathBuf;
-
-use clap::{Args, ValueEnum};
-
+use crate::cli::cost::CostArgs;
 use crate::cli::cost_choice;
 use crate::cli::error::CliError;
 use crate::cli::explain::human_bytes;
-use crate::cli::folder;
 use crate::cli::interrupt;
 use crate::cli::progress::Bar;
 use crate::cli::table::Report;
@@ -20,50 +16,14 @@ use crate::scene::Smoothing;
 use crate::study::{CostPoint, CostScene, CostSolver, CostTable, cost_curve};
 use crate::units::Metres;
 
-/// Measure error against time and memory, and draw the curve.
-#[derive(Debug, Clone, Args)]
-pub struct CostArgs {
-    /// Which solver.
-    #[arg(value_enum)]
-    pub solver: CostName,
-    /// Finest cell; the others are its doubles up to 8 mm. Half a millimetre takes minutes.
-    #[arg(long, value_name = "LENGTH", default_value = "0.5mm")]
-    pub finest: Metres,
-    /// Folder for table (CSV, JSON) and figure [default: none are written].
-    #[arg(long, value_name = "FOLDER")]
-    pub out: Option<PathBuf>,
-    /// Keep the table in the cache folder, where `build --tolerance` reads it.
-    #[arg(long)]
-    pub keep: bool,
-    /// Overwrite files that are there.
-    #[arg(long)]
-    pub force: bool,
-    /// Print as JSON.
-    #[arg(long)]
-    pub json: bool,
-}
-
-/// The solvers that have a cost curve.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum CostName {
-    /// The built-in solver in two dimensions.
-    Fdtd2d,
-}
-
 /// Coarsest cell of the curve.
 const COARSEST: f64 = 0.008;
 
-/// Runs the subcommand.
-///
-/// # Errors
-/// When a run fails or a file cannot be written.
-pub fn run(args: &CostArgs) -> Result<(), CliError> {
+/// Measures and shows the curve.
+pub(super) fn run(args: &CostArgs) -> Result<(), CliError> {
     let mut cells = vec![Metres(COARSEST)];
     while let Some(last) = cells.last().map(|cell| cell.si()).filter(|cell| cell / 2.0 >= args.finest.si() * (1.0 - 1e-9)) {
         cells.push(Metres(last / 2.0));
-    }
-    if let Some(folder) = &args.out {
-        folder::prepare(folder, args.force)?;
     }
     let (single, double) = (Fdtd::default(), Fdtd { precision: Precision::Double, ..Fdtd::default() });
     let bytes = |model: &crate::model::Model| {

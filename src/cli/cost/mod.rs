@@ -1,0 +1,62 @@
+//! `cost`: what accuracy costs in time, measured on this machine.
+
+mod fdtd2d;
+mod packing;
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use crate::cli::error::CliError;
+use crate::cli::folder;
+use crate::units::Metres;
+
+/// Measure error against time and memory, and draw the curve.
+#[derive(Debug, Clone, Args)]
+pub struct CostArgs {
+    /// What to measure: `fdtd2d`, the built-in solver over cell size, smoothing and precision; `packing`, the random
+    /// sequential adsorption over the number of stones.
+    #[arg(value_enum)]
+    pub solver: CostName,
+    /// fdtd2d: finest cell; the others are its doubles up to 8 mm. Half a millimetre takes minutes.
+    #[arg(long, value_name = "LENGTH", default_value = "0.5mm")]
+    pub finest: Metres,
+    /// packing: most stones; the others are thirds of it down to a thousand.
+    #[arg(long, value_name = "NUM", default_value_t = 100_000)]
+    pub stones: usize,
+    /// Folder for table (CSV, JSON) and figure [default: none are written].
+    #[arg(long, value_name = "FOLDER")]
+    pub out: Option<PathBuf>,
+    /// fdtd2d: keep the table in the cache folder, where `build --tolerance` reads it.
+    #[arg(long)]
+    pub keep: bool,
+    /// Overwrite files that are there.
+    #[arg(long)]
+    pub force: bool,
+    /// Print as JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What has a cost curve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum CostName {
+    /// The built-in solver in two dimensions.
+    Fdtd2d,
+    /// Random sequential adsorption and compaction.
+    Packing,
+}
+
+/// Runs the subcommand.
+///
+/// # Errors
+/// When a run fails or a file cannot be written.
+pub fn run(args: &CostArgs) -> Result<(), CliError> {
+    if let Some(folder) = &args.out {
+        folder::prepare(folder, args.force)?;
+    }
+    match args.solver {
+        CostName::Fdtd2d => fdtd2d::run(args),
+        CostName::Packing => packing::run(args),
+    }
+}
