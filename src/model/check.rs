@@ -149,7 +149,7 @@ impl std::fmt::Display for Resolution {
         )?;
         writeln!(f, "  cells per wavelength   {:.1}, at least 10 wanted\n", self.cells_per_wavelength)?;
         let wanted = self.wanted_cell().in_unit("mm").replace(' ', "");
-        write!(f, "hint: `--cell {wanted}`, or lower `source.centre_frequency`")
+        write!(f, "hint: `--cell {wanted}`, or a lower `--frequency`")
     }
 }
 
