@@ -61,6 +61,9 @@ pub(super) fn check(spec: &SceneSpec) -> Result<(), SceneError> {
             &format!("from 0% to the porosity of the fines ({most})"),
             "`--moisture 10%`",
         )?;
+        if moisture.fines.si() > 0.0 && spec.fouling.is_none() {
+            return Err(SceneError::NoFines { moisture: moisture.fines });
+        }
         require(
             (0.0..=1.0).contains(&moisture.voids.si()),
             "moisture.voids",

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::files::{self, FileError};
 use crate::material::{DielectricError, Equivalent2dError, FitError, FoulingError, MixError, UnknownMaterial};
 use crate::packing::PackingError;
+use crate::units::{Metres, Share};
 
 /// What can be wrong with a scene.
 #[derive(Debug, thiserror::Error)]
@@ -57,6 +58,22 @@ pub enum SceneError {
     FoulingText {
         /// What the user wrote.
         text: String,
+    },
+    /// Water for fines that are not there.
+    #[error("`moisture.fines` is {moisture}, but this bed has no fines\n\nhint: add some with `--fouling 20cm`; water between clean stones is `voids = \"5%\"` under `[moisture]`")]
+    NoFines {
+        /// What the user wrote.
+        moisture: Share,
+    },
+    /// A packing of another width than the tank.
+    #[error("the packing `{}` is {packing} wide, the tank {tank}\n\nhint: write `width = \"{packing}\"` under `[tank]`", file.display())]
+    PackingWidth {
+        /// The file.
+        file: PathBuf,
+        /// Width of the packing.
+        packing: Metres,
+        /// Width of the tank.
+        tank: Metres,
     },
     /// `method = "file"` without a file.
     #[error("`packing.method` is \"file\", but `packing.file` names no file\n\nhint: add `file = \"packing.csv\"` under `[packing]`")]

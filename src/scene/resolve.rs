@@ -118,7 +118,11 @@ const FOREIGN_OVERLAP: Metres = Metres(2e-4);
 fn read_packing(file: &Path, width: Metres) -> Result<Packing, SceneError> {
     let text = files::read_text(file)?;
     if file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
-        return Ok(packing::export::from_json(&text, FOREIGN_OVERLAP)?);
+        let packing = packing::export::from_json(&text, FOREIGN_OVERLAP)?;
+        if (packing.width.si() - width.si()).abs() > 1e-9 {
+            return Err(SceneError::PackingWidth { file: file.into(), packing: packing.width, tank: width });
+        }
+        return Ok(packing);
     }
     let free = packing::export::from_csv(&text, None, FOREIGN_OVERLAP)?;
     let height = free.top();
