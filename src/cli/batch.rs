@@ -1,10 +1,11 @@
 //! Many runs side by side, one process per free core: a failed one is reported, the rest finishes.
 
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
+use std::process::Command;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use crate::cli::child;
 use crate::cli::error::{CliError, Kind};
 use crate::cli::interrupt;
 use crate::cli::progress::Bar;
@@ -15,7 +16,30 @@ use crate::forward::Progress;
 /// What became of one target.
 struct Finished {
     target: PathBuf,
-    outcome: Result<serde_json::Value, String>,
+    outcome: Result<serde_json::Value, Failure>,
+}
+
+/// Why a target has no result.
+enum Failure {
+    /// It was stopped along with this program.
+    Stopped,
+    /// It failed, with this message.
+    Failed(String),
+}
+
+impl Failure {
+    fn message(&self) -> &str {
+        match self {
+            Self::Stopped => "stopped on request",
+            Self::Failed(message) => message,
+        }
+    }
+}
+
+/// What a run printed as its error, without the word.
+fn message_of(stderr: &[u8]) -> String {
+    let text = String::from_utf8_lossy(stderr);
+    text.split_once("error: ").map_or(&*text, |(_, message)| message).trim().to_string()
 }
 
 /// Runs every target in a process of its own.
@@ -48,12 +72,13 @@ pub fn run_many(args: &RunArgs) -> Result<(), CliError> {
                     if let Some(python) = &args.gprmax_python {
                         command.arg("--gprmax-python").arg(python);
                     }
-                    let outcome = match command.stdin(Stdio::null()).output() {
+                    let outcome = match child::output(&mut command) {
                         Ok(output) if output.status.success() => {
-                            serde_json::from_slice(&output.stdout).map_err(|error| format!("unreadable outcome: {error}"))
+                            serde_json::from_slice(&output.stdout).map_err(|error| Failure::Failed(format!("unreadable outcome: {error}")))
                         }
-                        Ok(output) => Err(String::from_utf8_lossy(&output.stderr).trim().to_string()),
-                        Err(error) => Err(format!("cannot start: {error}")),
+                        Ok(_) if interrupt::requested() => Err(Failure::Stopped),
+                        Ok(output) => Err(Failure::Failed(message_of(&output.stderr))),
+                        Err(error) => Err(Failure::Failed(format!("cannot start: {error}"))),
                     };
                     if let Ok(mut finished) = finished.lock() {
                         finished.push((index, Finished { target: target.clone(), outcome }));
@@ -71,18 +96,23 @@ pub fn run_many(args: &RunArgs) -> Result<(), CliError> {
 }
 
 fn report(args: &RunArgs, finished: &[(usize, Finished)]) -> Result<(), CliError> {
-    let failed = finished.iter().filter(|(_, run)| run.outcome.is_err()).count();
+    let failed = finished.iter().filter(|(_, run)| matches!(run.outcome, Err(Failure::Failed(_)))).count();
     if args.json {
         let rows: Vec<_> = finished
             .iter()
             .map(|(_, run)| match &run.outcome {
                 Ok(outcome) => outcome.clone(),
-                Err(error) => serde_json::json!({ "target": run.target, "error": error }),
+                Err(error) => serde_json::json!({ "target": run.target, "error": error.message() }),
             })
             .collect();
         println!("{}", serde_json::to_string_pretty(&rows)?);
     } else {
-        let mut table = Report::new(format!("{} runs, {failed} failed", finished.len()), ["target", "outcome", "seconds"]);
+        let stopped = finished.iter().filter(|(_, run)| matches!(run.outcome, Err(Failure::Stopped))).count();
+        let mut title = format!("{} runs, {failed} failed", finished.len());
+        if stopped > 0 {
+            title.push_str(&format!(", {stopped} stopped"));
+        }
+        let mut table = Report::new(title, ["target", "outcome", "seconds"]);
         for (_, run) in finished {
             let (what, seconds) = match &run.outcome {
                 Ok(value) => {
@@ -90,26 +120,25 @@ fn report(args: &RunArgs, finished: &[(usize, Finished)]) -> Result<(), CliError
                     let seconds = value["record"]["wall_seconds"].as_f64().unwrap_or(0.0);
                     (if kept { "was there already" } else { "written" }.to_string(), format!("{seconds:.2}"))
                 }
-                Err(error) => (error.lines().next().unwrap_or("failed").to_string(), "–".into()),
+                Err(error) => (error.message().lines().next().unwrap_or("failed").to_string(), "–".into()),
             };
             table.row([run.target.display().to_string(), what, seconds]);
         }
         table.print();
     }
     for (_, run) in finished {
-        if let Err(error) = &run.outcome {
-            eprintln!("{}: {error}\n", run.target.display());
+        if let Err(Failure::Failed(message)) = &run.outcome {
+            eprintln!("{}: {message}\n", run.target.display());
         }
     }
     if interrupt::requested() {
         return Err(CliError::new(Kind::Interrupted, "stopped on request; start the same command again to go on"));
     }
     if failed > 0 {
-        return Err(CliError::new(Kind::Verdict, format!("{failed} of {} runs failed; the others are complete", args.targets.len())));
+        return Err(CliError::new(Kind::Verdict, format!("{failed} of {} runs failed; the others are complete", finished.len())));
     }
     Ok(())
 }
-
 
 #[cfg(test)]
 mod tests {

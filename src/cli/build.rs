@@ -23,8 +23,9 @@ use crate::units::Share;
 /// Build a scene: pack the stones, mix the materials, draw the map, write the gprMax input.
 #[derive(Debug, Clone, Args)]
 pub struct BuildArgs {
-    /// Scene file; without one the preset `tank`. A file kept by an earlier build makes the same bytes again.
-    #[arg(value_name = "SCENE.toml")]
+    /// Scene file, or a folder that holds a `scene.toml`; without one the preset `tank`. The file kept by an earlier build
+    /// makes the same bytes again.
+    #[arg(value_name = "SCENE.toml|FOLDER")]
     pub scene: Option<PathBuf>,
     #[command(flatten)]
     pub args: SceneArgs,
@@ -78,7 +79,7 @@ pub fn run(args: &BuildArgs) -> Result<(), CliError> {
     if args.json {
         println!("{}", serde_json::to_string_pretty(&manifests)?);
     } else {
-        let next = if args.realisations == 1 { base.display().to_string() } else { format!("{}/seed-*", base.display()) };
+        let next = if args.realisations == 1 { folder::typed(&base) } else { format!("{}/seed-*", folder::typed(&base)) };
         eprintln!("\nnext: ballast-gpr run {next}");
     }
     Ok(())
@@ -89,7 +90,7 @@ pub fn run(args: &BuildArgs) -> Result<(), CliError> {
 /// # Errors
 /// When the scene cannot be built or written.
 pub fn build_folder(spec: &SceneSpec, target: &Path, template: Option<(String, String)>, force: bool) -> Result<Manifest, CliError> {
-    let scene = scene::resolve(spec)?;
+    let mut scene = scene::resolve(spec)?;
     let started = Instant::now();
     let model = raster::build_model(&scene)?;
     let painted = model::paint(&model)?;
@@ -100,10 +101,10 @@ pub fn build_folder(spec: &SceneSpec, target: &Path, template: Option<(String, S
         }
     }
     let raster_seconds = started.elapsed().as_secs_f64();
+    scene.spec.to_toml()?;
     folder::prepare(target, force)?;
     let started = Instant::now();
-    files::write_bytes(&target.join(folder::SCENE), scene.spec.to_toml()?.as_bytes())?;
-    pack::write_packing(&scene, target)?;
+    pack::write_scene(&mut scene, target)?;
     gprmax::write_input(&model, target, "model", &InputOptions { template })?;
     map_figure::write(&scene, &model, &painted, target)?;
     let seconds = Seconds { packing: scene.packing_seconds, raster: raster_seconds, writing: started.elapsed().as_secs_f64() };

@@ -182,7 +182,7 @@ fn expected(targets: &[&Path]) -> Result<ExpectedEchoes, CliError> {
     let mut found = ExpectedEchoes::default();
     let join = |window: &mut Option<(Seconds, Seconds)>, [from, to]: Window| {
         let (low, high) = window.map_or((from, to), |(low, high)| (low.si().min(from), high.si().max(to)));
-        *window = Some((Seconds(low), Seconds(high)));
+        *window = Some((whole_picoseconds(low), whole_picoseconds(high)));
     };
     for target in targets {
         if let Some(folder) = trace_file::built_folder(target) {
@@ -197,6 +197,11 @@ fn expected(targets: &[&Path]) -> Result<ExpectedEchoes, CliError> {
     Ok(found)
 }
 
+/// Rounds a time to what a message should show of it.
+fn whole_picoseconds(time: f64) -> Seconds {
+    Seconds((1e12 * time).round() / 1e12)
+}
+
 fn write_figure(args: &CompareArgs, comparison: &Comparison, number: Option<usize>) -> Result<(), CliError> {
     let default = match args.traces.as_slice() {
         [one] if one.is_dir() && args.to.is_none() => one.join("comparison"),
@@ -208,16 +213,16 @@ fn write_figure(args: &CompareArgs, comparison: &Comparison, number: Option<usiz
         stem.set_file_name(name);
     }
     for extension in ["png", "svg", "json"] {
-        folder::may_write(&stem.with_extension(extension), args.force)?;
+        folder::may_write(&folder::with_ending(&stem, extension), args.force)?;
     }
-    let parent = stem.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let parent = stem.parent().unwrap_or(Path::new(""));
     files::create_folder(parent)?;
     let name = stem.file_name().map_or("comparison".into(), |name| name.to_string_lossy().into_owned());
     let title = format!("{} and {}", comparison.a.name, comparison.b.name);
     comparison_figure::figure(&title, comparison).write(parent, &name)?;
     let mut text = serde_json::to_string_pretty(comparison)?;
     text.push('\n');
-    files::write_bytes(&stem.with_extension("json"), text.as_bytes())?;
+    files::write_bytes(&folder::with_ending(&stem, "json"), text.as_bytes())?;
     eprintln!("written: {0}.png, {0}.svg, {0}.json", stem.display());
     Ok(())
 }
@@ -234,6 +239,13 @@ fn summary(comparison: &Comparison) -> serde_json::Value {
     })
 }
 
+/// A number with its sign, and none on what rounds to zero.
+fn signed(value: f64, digits: usize) -> String {
+    let text = format!("{value:+.digits$}");
+    let zero = text.chars().all(|c| "+-0.".contains(c));
+    if zero { text.replace(['+', '-'], "") } else { text }
+}
+
 /// The numbers of a comparison as a table.
 pub fn table(comparison: &Comparison) -> Report {
     let Comparison { metrics, picks_a, picks_b, a, b, .. } = comparison;
@@ -247,8 +259,7 @@ pub fn table(comparison: &Comparison) -> Report {
     };
     let error = |error: &TimeError, envelope: bool| {
         let value = if envelope { error.envelope } else { error.waveform };
-        // Adding zero turns a rounded "-0" into "+0".
-        value.map_or("–".into(), |value| format!("{:+.3}", (1e12 * value.si()).round() / 1e3 + 0.0))
+        value.map_or("–".into(), |value| signed(1e9 * value.si(), 3))
     };
     for (name, pick_a, pick_b, found) in [
         ("surface echo", &picks_a.surface, &picks_b.surface, &metrics.surface_time_error),
@@ -260,13 +271,13 @@ pub fn table(comparison: &Comparison) -> Report {
     }
     let mut single = |name: &str, value: String| table.row([name.into(), String::new(), String::new(), value]);
     single("largest cross-correlation", format!("{:.4}", metrics.cross_correlation.maximum));
-    single("its lag, ns", format!("{:+.3}", 1e9 * metrics.cross_correlation.lag.si()));
+    single("its lag, ns", signed(1e9 * metrics.cross_correlation.lag.si(), 3));
     single("correlation without lag", format!("{:.4}", metrics.zero_lag_correlation));
     single("RMSE after normalisation", format!("{:.3e}", metrics.rmse));
     single("relative L2 difference", format!("{:.3e}", metrics.relative_l2));
     single("correlation of envelopes", format!("{:.4}", metrics.envelope_correlation));
     single("correlation of spectra", format!("{:.4}", metrics.spectral_correlation));
-    single("shift of the spectral peak, MHz", format!("{:+.1}", 1e-6 * metrics.peak_frequency_shift.si()));
+    single("shift of the spectral peak, MHz", signed(1e-6 * metrics.peak_frequency_shift.si(), 1));
     for (letter, picks) in [("A", picks_a), ("B", picks_b)] {
         for (name, pick) in [("surface echo", &picks.surface), ("plate echo", &picks.plate)] {
             if let EchoPick::NotPicked(reason) = pick {
@@ -275,4 +286,16 @@ pub fn table(comparison: &Comparison) -> Report {
         }
     }
     table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zero_has_no_sign() {
+        assert_eq!(signed(-1e-9, 3), "0.000");
+        assert_eq!(signed(-0.0014, 3), "-0.001");
+        assert_eq!(signed(12.34, 1), "+12.3");
+    }
 }

@@ -65,11 +65,56 @@ macro_rules! exit_codes {
 }
 
 exit_codes! {
-    Input: crate::scene::SceneError, crate::packing::PackingError,
-        crate::raster::RasterError, crate::gprmax::InFileError, crate::gprmax::OutputError, crate::gprmax::WriteError,
-        crate::compare::CompareError, crate::compare::text::TextError, crate::model::CheckError, crate::model::PaintError, crate::files::FileError, crate::units::UnitError;
-    GprMax: crate::gprmax::InstallError, crate::gprmax::RunError;
-    Fault: crate::plot::PlotError, crate::gprmax::OutputWriteError, serde_json::Error, crate::study::CaseError;
+    Input: crate::packing::PackingError, crate::raster::RasterError, crate::compare::CompareError,
+        crate::compare::text::TextError, crate::model::CheckError, crate::model::PaintError, crate::units::UnitError;
+    Fault: serde_json::Error, crate::study::CaseError;
+}
+
+/// As [`exit_codes`], for errors that may wrap one of a file: that is then the user's file or disk, whoever met it.
+macro_rules! exit_codes_but_of_files {
+    ($($kind:ident: $($($part:ident)::+),+ $(,)?;)+) => {
+        $($(impl From<$crate::$($part)::+> for CliError {
+            fn from(error: $crate::$($part)::+) -> Self {
+                match error {
+                    $crate::$($part)::+::File(error) => error.into(),
+                    error => Self::new(Kind::$kind, chain(&error)),
+                }
+            }
+        })+)+
+    };
+}
+
+exit_codes_but_of_files! {
+    Input: scene::SceneError, gprmax::InFileError, gprmax::WriteError, gprmax::hdf5::Hdf5Error;
+    GprMax: gprmax::InstallError;
+    Fault: plot::PlotError, gprmax::OutputWriteError;
+}
+
+impl From<crate::files::FileError> for CliError {
+    fn from(error: crate::files::FileError) -> Self {
+        Self::input(format!("failed to {error}"))
+    }
+}
+
+impl From<crate::gprmax::OutputError> for CliError {
+    fn from(error: crate::gprmax::OutputError) -> Self {
+        match error {
+            crate::gprmax::OutputError::Hdf5(error) => error.into(),
+            error => Self::input(chain(&error)),
+        }
+    }
+}
+
+impl From<crate::gprmax::RunError> for CliError {
+    fn from(error: crate::gprmax::RunError) -> Self {
+        use crate::gprmax::RunError;
+        match error {
+            RunError::File(error) => error.into(),
+            RunError::Write(error) => error.into(),
+            RunError::Stopped => crate::forward::ForwardError::Stopped.into(),
+            error => Self::new(Kind::GprMax, chain(&error)),
+        }
+    }
 }
 
 impl From<crate::fdtd::FdtdError> for CliError {

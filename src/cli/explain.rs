@@ -6,7 +6,6 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::cli::error::CliError;
-use crate::cli::folder;
 use crate::cli::scene_args::SceneArgs;
 use crate::cli::table::Report;
 use crate::fdtd;
@@ -39,10 +38,19 @@ pub struct ExplainArgs {
 pub fn run(args: &ExplainArgs) -> Result<(), CliError> {
     let is_input = args.target.as_ref().is_some_and(|path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("in")));
     let (scene, model) = if let (true, Some(path)) = (is_input, &args.target) {
-        (None, gprmax::read_model(path)?)
+        if args.args != SceneArgs::default() {
+            return Err(CliError::input(format!(
+                "`{}` is a gprMax input file, which no flag of a scene can change\n\nhint: leave the flag out, or change the file",
+                path.display()
+            )));
+        }
+        let read = gprmax::read_input(path)?;
+        for note in &read.notes {
+            eprintln!("note: {note}");
+        }
+        (None, read.model)
     } else {
-        let file = args.target.as_ref().map(|path| if path.is_dir() { path.join(folder::SCENE) } else { path.clone() });
-        let spec: SceneSpec = args.args.spec(file.as_deref())?;
+        let spec: SceneSpec = args.args.spec(args.target.as_deref())?;
         let scene = scene::resolve(&spec)?;
         let model = raster::build_model(&scene)?;
         (Some(scene), model)

@@ -52,6 +52,21 @@ pub fn may_write(path: &Path, force: bool) -> Result<(), CliError> {
     Ok(())
 }
 
+/// A path as it can be typed in a shell: in single quotes where it holds more than plain characters.
+pub fn typed(path: &Path) -> String {
+    let text = path.display().to_string();
+    let plain = |c: char| c.is_alphanumeric() || "/._-+=:,@%".contains(c);
+    if !text.is_empty() && text.chars().all(plain) { text } else { format!("'{}'", text.replace('\'', "'\\''")) }
+}
+
+/// `stem` with a dot and an ending behind it, whatever dots the stem itself has.
+pub fn with_ending(stem: &Path, ending: &str) -> PathBuf {
+    let mut name = stem.as_os_str().to_owned();
+    name.push(".");
+    name.push(ending);
+    name.into()
+}
+
 /// Whether this is a folder that `build` has written completely.
 pub fn is_built(folder: &Path) -> bool {
     folder.join(MANIFEST).is_file() && folder.join(MODEL).is_file()
@@ -123,4 +138,21 @@ impl RunRecord {
 /// Name, version and commit of this program.
 pub fn program() -> String {
     format!("ballast-gpr {} ({})", env!("CARGO_PKG_VERSION"), env!("BALLAST_GPR_COMMIT"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_in_a_hint_can_be_typed() {
+        assert_eq!(typed(Path::new("runs/fouling-20cm_1")), "runs/fouling-20cm_1");
+        assert_eq!(typed(Path::new("my runs/a")), "'my runs/a'");
+        assert_eq!(typed(Path::new("it's")), r"'it'\''s'");
+    }
+
+    #[test]
+    fn an_ending_goes_behind_every_dot() {
+        assert_eq!(with_ending(Path::new("a/cell-1.5mm"), "png"), Path::new("a/cell-1.5mm.png"));
+    }
 }

@@ -2,6 +2,7 @@
 
 mod batch;
 mod build;
+mod child;
 mod compare;
 mod comparison_figure;
 mod cost;
@@ -46,7 +47,8 @@ Start with:
   ballast-gpr build --fouling 20cm          a folder with packing, map and gprMax input
   ballast-gpr run tank-fouling-20cm-seed-1  its A-scan
 
-Exit codes: 0 done, 1 ran and the verdict is no, 2 your input, 3 gprMax, 70 a fault of this program.";
+Exit codes: 0 done, 1 ran and the verdict is no, 2 your input or files, 3 gprMax, 70 a fault of this program,
+130 stopped by Ctrl-C.";
 
 #[derive(Debug, Subcommand)]
 enum Command {

@@ -14,13 +14,13 @@ use crate::forward::Progress;
 use crate::packing::calibrate::{self, CalibrationPlan};
 use crate::packing::{Grading, GradingRow, InputRule, Packing, Porosity, RsaOutcome, export};
 use crate::plot::{Axis, Band, Chart, Figure as _, PackingFigure, Series, Stroke};
-use crate::scene::{self, Scene, SceneSpec};
+use crate::scene::{self, PackingMethod, Scene, SceneSpec};
 
 /// Pack stones: sizing, positioning and compaction, without a radar model.
 #[derive(Debug, Clone, Args)]
 pub struct PackArgs {
-    /// Scene file; without one the preset `tank`.
-    #[arg(value_name = "SCENE.toml")]
+    /// Scene file, or a folder that holds a `scene.toml`; without one the preset `tank`.
+    #[arg(value_name = "SCENE.toml|FOLDER")]
     pub scene: Option<PathBuf>,
     #[command(flatten)]
     pub args: SceneArgs,
@@ -57,15 +57,15 @@ pub fn run(args: &PackArgs) -> Result<(), CliError> {
     if args.calibrate {
         refit(&mut spec, args.json)?;
     }
-    let scene = scene::resolve(&spec)?;
+    let mut scene = scene::resolve(&spec)?;
+    if let (Some(folder), Some(_)) = (&args.out, &scene.packing) {
+        scene.spec.to_toml()?;
+        folder::prepare(folder, args.force)?;
+        write_scene(&mut scene, folder)?;
+    }
     let packing = scene.packing.as_ref().ok_or_else(|| {
         CliError::input("this scene has no stones (`method = \"homogeneous\"`)\n\nhint: leave `--homogeneous` out")
     })?;
-    if let Some(folder) = &args.out {
-        folder::prepare(folder, args.force)?;
-        files::write_bytes(&folder.join(folder::SCENE), scene.spec.to_toml()?.as_bytes())?;
-        write_packing(&scene, folder)?;
-    }
     let grading = scene.spec.packing.grading.curve()?;
     if args.json {
         println!("{}", serde_json::to_string_pretty(&statistics(&scene, packing, &grading))?);
@@ -98,15 +98,31 @@ fn refit(spec: &mut SceneSpec, json: bool) -> Result<(), CliError> {
     Ok(())
 }
 
+/// Writes the scene and its packing into a folder. A packing read from outside is kept there too and named by the scene, so
+/// that the folder is whole wherever it is moved.
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn write_scene(scene: &mut Scene, folder: &Path) -> Result<(), CliError> {
+    if scene.spec.packing.method == PackingMethod::File {
+        scene.spec.packing.file = Some(PACKING.into());
+    }
+    files::write_bytes(&folder.join(folder::SCENE), scene.spec.to_toml()?.as_bytes())?;
+    write_packing(scene, folder)
+}
+
+/// Name of the packing that keeps every bit.
+const PACKING: &str = "packing.json";
+
 /// Writes every file of a scene's packing into its folder; nothing for a homogeneous bed.
 ///
 /// # Errors
 /// When a file cannot be written.
-pub fn write_packing(scene: &Scene, folder: &Path) -> Result<(), CliError> {
+fn write_packing(scene: &Scene, folder: &Path) -> Result<(), CliError> {
     let Some(packing) = &scene.packing else { return Ok(()) };
     let write = |name: &str, bytes: &[u8]| files::write_bytes(&folder.join(name), bytes);
     write("packing.csv", export::csv(packing).as_bytes())?;
-    write("packing.json", export::json(packing)?.as_bytes())?;
+    write(PACKING, export::json(packing)?.as_bytes())?;
     write("packing.scr", export::autocad_script(packing).as_bytes())?;
     write("packing.dxf", &export::dxf(packing)?)?;
     let grading = scene.spec.packing.grading.curve()?;

@@ -133,7 +133,7 @@ pub fn run_one(args: &RunArgs, target: &Path) -> Result<Outcome, CliError> {
         if let Some(record) = RunRecord::beside(&result).filter(same) {
             return Ok(Outcome { target: target.into(), result, kept: true, record });
         }
-        folder::may_write(&result, false)?;
+        return Err(other_result(args, &result, &fingerprint));
     }
     let started = Instant::now();
     let loop_seconds = match args.solver {
@@ -154,18 +154,45 @@ pub fn run_one(args: &RunArgs, target: &Path) -> Result<Outcome, CliError> {
     Ok(Outcome { target: target.into(), result, kept: false, record })
 }
 
+/// Says why a result that is there is not the one asked for.
+fn other_result(args: &RunArgs, result: &Path, fingerprint: &str) -> CliError {
+    let why = match RunRecord::beside(result) {
+        None => "and nothing beside it says what made it".to_string(),
+        Some(record) if record.model != fingerprint => "of another model: the input has changed since".to_string(),
+        Some(record) if record.solver != args.solver.name() => format!("by the solver `{}`", record.solver),
+        Some(record) => format!("in {} precision", record.precision),
+    };
+    CliError::input(format!(
+        "`{}` exists already, {why}\n\nhint: overwrite it with `--force`, or write another with `--out FILE.h5`",
+        result.display()
+    ))
+}
+
 /// The input file and the result of a target.
 fn paths(args: &RunArgs, target: &Path) -> Result<(PathBuf, PathBuf), CliError> {
     let (input, default) = if target.is_dir() {
         if !folder::is_built(target) {
+            let scene = target.join(folder::SCENE);
+            let build = if scene.is_file() {
+                format!("finish it with `ballast-gpr build {} --out {} --force`", folder::typed(&scene), folder::typed(target))
+            } else {
+                "make a folder with one with `ballast-gpr build --out FOLDER`".to_string()
+            };
             return Err(CliError::input(format!(
-                "`{}` holds no complete model (`{}` and `{}`)\n\nhint: make one with `ballast-gpr build --out {0}`",
+                "`{}` holds no complete model (`{}` and `{}`)\n\nhint: {build}",
                 target.display(),
                 folder::MODEL,
                 folder::MANIFEST
             )));
         }
         (target.join(folder::MODEL), target.join(format!("{}.h5", args.solver.name())))
+    } else if !target.exists() {
+        let hint = if target.extension().is_some() {
+            String::new()
+        } else {
+            format!("\n\nhint: `ballast-gpr build --out {}` makes a folder of that name", folder::typed(target))
+        };
+        return Err(CliError::input(format!("`{}` does not exist{hint}", target.display())));
     } else if target.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("in")) {
         (target.to_path_buf(), target.with_extension("h5"))
     } else {
@@ -175,7 +202,7 @@ fn paths(args: &RunArgs, target: &Path) -> Result<(PathBuf, PathBuf), CliError> 
         )));
     };
     if !input.is_file() {
-        return Err(CliError::input(format!("`{}` does not exist", input.display())));
+        return Err(CliError::input(format!("`{}` is not a file", input.display())));
     }
     Ok((input, args.out.clone().unwrap_or(default)))
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use crate::cli::error::CliError;
+use crate::cli::folder;
 use crate::packing::{ClassReading, Grading, PackingError};
 use crate::scene::{
     EquivalentStone, FoulingAmount, FoulingSpec, GeometryKind, GradingSpec, PackingMethod, SceneSpec, Smoothing,
@@ -12,7 +13,7 @@ use crate::scene::{
 use crate::units::{Hertz, Metres, Seconds, Share};
 
 /// What a scene is made of. Everything here can stand in the scene file as well; a flag wins over the file.
-#[derive(Debug, Clone, Default, Args)]
+#[derive(Debug, Clone, Default, PartialEq, Args)]
 #[command(next_help_heading = "Scene")]
 pub struct SceneArgs {
     /// Built-in scene to start from: `tank` is the laboratory tank of Benedetto et al. 2018.
@@ -22,7 +23,7 @@ pub struct SceneArgs {
     #[arg(long, value_name = "AMOUNT", allow_hyphen_values = true)]
     pub fouling: Option<FoulingAmount>,
     /// Water added to the fines, share of their volume (5%).
-    #[arg(long, value_name = "SHARE")]
+    #[arg(long, value_name = "SHARE", allow_hyphen_values = true)]
     pub moisture: Option<Share>,
     /// Void share of the bed (42%).
     #[arg(long, value_name = "SHARE", allow_hyphen_values = true)]
@@ -43,16 +44,16 @@ pub struct SceneArgs {
     #[arg(long)]
     pub equivalent_2d: bool,
     /// Seed of everything random [default: 1].
-    #[arg(long, value_name = "NUM")]
+    #[arg(long, value_name = "NUM", allow_hyphen_values = true)]
     pub seed: Option<u64>,
     /// Centre frequency of the pulse [default: 1 GHz].
-    #[arg(long, value_name = "FREQUENCY")]
+    #[arg(long, value_name = "FREQUENCY", allow_hyphen_values = true)]
     pub frequency: Option<Hertz>,
     /// Cell size [default: 2 mm].
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub cell: Option<Metres>,
     /// Time window [default: 25 ns].
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     pub time_window: Option<Seconds>,
     /// How stones become cells: true centres in a block of cells, or `#cylinder` lines with centres snapped to the grid.
     #[arg(long, value_enum)]
@@ -89,7 +90,7 @@ impl SceneArgs {
     /// When the file, the preset, the grading or a reading cannot be used.
     pub fn spec(&self, file: Option<&std::path::Path>) -> Result<SceneSpec, CliError> {
         let mut spec = match (file, &self.preset) {
-            (Some(file), None) => SceneSpec::read(file)?,
+            (Some(file), None) => SceneSpec::read(&scene_file(file)?)?,
             (None, preset) => SceneSpec::preset(preset.as_deref().unwrap_or("tank"))?,
             (Some(_), Some(_)) => {
                 return Err(CliError::input("a scene file and `--preset` were both given\n\nhint: leave one of them out"));
@@ -141,6 +142,22 @@ impl SceneArgs {
         }));
         Ok(())
     }
+}
+
+/// The scene file that a user names: itself, or that of a folder that `build` has written.
+fn scene_file(named: &std::path::Path) -> Result<PathBuf, CliError> {
+    if !named.is_dir() {
+        return Ok(named.into());
+    }
+    let file = named.join(folder::SCENE);
+    if file.is_file() {
+        return Ok(file);
+    }
+    Err(CliError::input(format!(
+        "the folder `{}` holds no scene (`{}`)\n\nhint: `ballast-gpr build --out FOLDER` makes a folder with one",
+        named.display(),
+        folder::SCENE
+    )))
 }
 
 fn set<T>(place: &mut T, value: Option<T>) {
