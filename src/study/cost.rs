@@ -140,9 +140,10 @@ pub fn cost_curve(
     let mut runs: Vec<(CostPoint, AScan)> = Vec::new();
     for solver in solvers {
         for &cell in cells {
+            let mut alone = None;
             for smoothing in smoothings {
                 let setting = CostSetting { cell, smoothing, double_precision: solver.double_precision };
-                runs.push(one_run(scene, setting, solver, on_progress)?);
+                runs.push(one_run(scene, setting, solver, &mut alone, on_progress)?);
                 on_point(runs.len(), total);
             }
         }
@@ -171,19 +172,23 @@ pub fn cost_curve(
     Ok(CostTable { format_version: 1, frequency: scene.frequency(), measured_order, finest_difference, points })
 }
 
-/// Runs a setting with and without the tank; the difference holds the echoes alone.
+/// Runs a setting, and once per cell size the antenna alone; the difference holds the echoes alone.
 fn one_run(
     scene: &CostScene,
     setting: CostSetting,
     solver: &CostSolver<'_>,
+    alone: &mut Option<AScan>,
     on_progress: OnProgress<'_>,
 ) -> Result<(CostPoint, AScan), CostError> {
     let model = raster::build_model(&scene.with(setting)?).map_err(EchoError::from)?;
     let started = Instant::now();
     let trace = radar_trace(solver.solver, &model, on_progress)?;
     let seconds = started.elapsed().as_secs_f64();
-    let alone = raster::antenna_alone(&model);
-    let (echoes, _) = compare::subtract_reference(&trace, &radar_trace(solver.solver, &alone, on_progress)?);
+    let direct = match alone {
+        Some(direct) => direct,
+        None => alone.insert(radar_trace(solver.solver, &raster::antenna_alone(&model), on_progress)?),
+    };
+    let (echoes, _) = compare::subtract_reference(&trace, direct);
     let window = scene.spec.grid.time_window.si();
     let trace = compare::resample(&echoes, Seconds(0.0), Seconds(COMMON_STEP), (window / COMMON_STEP) as usize);
     let cell_steps = (model.grid.cell_count() * model.iterations()) as u64;
