@@ -129,7 +129,8 @@ impl Packing {
         let total = self.solid_area();
         let row = |sieve: Metres, wanted: Share| {
             let limit = 0.5 * sieve.si() * (1.0 + 1e-9);
-            let passing: f64 = self.discs.iter().filter(|disc| disc.radius <= limit).map(Disc::area).sum();
+            // A sum of nothing is minus zero, which tables show; a fold from zero is not.
+            let passing = self.discs.iter().filter(|disc| disc.radius <= limit).map(Disc::area).fold(0.0, |a, b| a + b);
             GradingRow { sieve, wanted, found: Share(passing / total) }
         };
         grading.sieves().iter().map(|sieve| row(sieve.size, sieve.passing)).collect()
