@@ -15,6 +15,7 @@ use crate::packing::calibrate::{self, CalibrationPlan};
 use crate::packing::{Grading, GradingRow, InputRule, Packing, Porosity, RsaOutcome, export};
 use crate::plot::{Axis, Band, Chart, Figure as _, PackingFigure, Series, Stroke};
 use crate::scene::{self, PackingMethod, Scene, SceneSpec};
+use crate::units::Share;
 
 /// Pack stones: sizing, positioning and compaction, without a radar model.
 #[derive(Debug, Clone, Args)]
@@ -54,9 +55,7 @@ pub fn run(args: &PackArgs) -> Result<(), CliError> {
         return Ok(());
     }
     let mut spec = args.args.spec(args.scene.as_deref())?;
-    if args.calibrate {
-        refit(&mut spec, args.json)?;
-    }
+    let calibration = args.calibrate.then(|| refit(&mut spec, args.json)).transpose()?;
     let mut scene = scene::resolve(&spec)?;
     if let (Some(folder), Some(_)) = (&args.out, &scene.packing) {
         scene.spec.to_toml()?;
@@ -68,14 +67,14 @@ pub fn run(args: &PackArgs) -> Result<(), CliError> {
     })?;
     let grading = scene.spec.packing.grading.curve()?;
     if args.json {
-        println!("{}", serde_json::to_string_pretty(&statistics(&scene, packing, &grading))?);
+        println!("{}", serde_json::to_string_pretty(&statistics(&scene, packing, &grading, calibration))?);
     } else {
         print(&scene, packing, &grading);
     }
     Ok(())
 }
 
-fn refit(spec: &mut SceneSpec, json: bool) -> Result<(), CliError> {
+fn refit(spec: &mut SceneSpec, json: bool) -> Result<serde_json::Value, CliError> {
     let input = scene::rsa_input(spec, Porosity::new(spec.packing.voids).map_err(CliError::from)?)?;
     let bar = Bar::new("calibrating");
     let plan = CalibrationPlan { seed: spec.seed, ..CalibrationPlan::default() };
@@ -95,7 +94,18 @@ fn refit(spec: &mut SceneSpec, json: bool) -> Result<(), CliError> {
             100.0 * found.residual.si()
         );
     }
-    Ok(())
+    Ok(serde_json::json!({
+        "packings": found.points.len(),
+        "alpha_m": found.fit.alpha.si(),
+        "beta_m": found.fit.beta.si(),
+        "r_squared": found.r_squared,
+        "residual_m": found.residual.si(),
+    }))
+}
+
+/// A share in percent, without the sign that a zero may carry.
+fn percent(share: Share) -> f64 {
+    100.0 * share.si() + 0.0
 }
 
 /// Writes the scene and its packing into a folder. A packing read from outside is kept there too and named by the scene, so
@@ -136,9 +146,9 @@ fn write_packing(scene: &Scene, folder: &Path) -> Result<(), CliError> {
             table.push_str(&format!(
                 "{},{},{},{}\n",
                 1e3 * sieve.si(),
-                100.0 * wanted.si(),
-                100.0 * found.si(),
-                100.0 * row.deviation().si()
+                percent(*wanted),
+                percent(*found),
+                percent(row.deviation())
             ));
         }
         write("grading.csv", table.as_bytes())?;
@@ -173,9 +183,9 @@ fn packing_figure(packing: &Packing, outcome: Option<&RsaOutcome>) -> PackingFig
 fn grading_chart(grading: &Grading, rows: &[GradingRow]) -> Chart {
     let mm = |row: &GradingRow| 1e3 * row.sieve.si();
     let mut chart = Chart::new("Sieve curve", Axis::log10("sieve", "mm"), Axis::linear("passing", "%").between(0.0, 100.0))
-        .with(Series::line("input", rows.iter().map(|row| (mm(row), 100.0 * row.wanted.si())).collect()))
+        .with(Series::line("input", rows.iter().map(|row| (mm(row), percent(row.wanted))).collect()))
         .with(
-            Series::line("packing", rows.iter().map(|row| (mm(row), 100.0 * row.found.si())).collect())
+            Series::line("packing", rows.iter().map(|row| (mm(row), percent(row.found))).collect())
                 .drawn(Stroke::Dashed, 1),
         );
     let bands: Vec<_> = grading.sieves().iter().filter_map(|sieve| Some((1e3 * sieve.size.si(), sieve.lowest?, sieve.highest?))).collect();
@@ -211,28 +221,29 @@ fn print(scene: &Scene, packing: &Packing, grading: &Grading) {
     for row in packing.grading_table(grading) {
         table.row([
             format!("{}", 1e3 * row.sieve.si()),
-            format!("{:.1}", 100.0 * row.wanted.si()),
-            format!("{:.1}", 100.0 * row.found.si()),
-            format!("{:+.2}", 100.0 * row.deviation().si()),
+            format!("{:.1}", percent(row.wanted)),
+            format!("{:.1}", percent(row.found)),
+            format!("{:+.2}", percent(row.deviation())),
         ]);
     }
     table.print();
 }
 
-fn statistics(scene: &Scene, packing: &Packing, grading: &Grading) -> serde_json::Value {
+fn statistics(scene: &Scene, packing: &Packing, grading: &Grading, calibration: Option<serde_json::Value>) -> serde_json::Value {
     let rows: Vec<_> = packing
         .grading_table(grading)
         .iter()
         .map(|row| {
             serde_json::json!({
                 "sieve_mm": 1e3 * row.sieve.si(),
-                "input_passing_percent": 100.0 * row.wanted.si(),
-                "output_passing_percent": 100.0 * row.found.si(),
+                "input_passing_percent": percent(row.wanted),
+                "output_passing_percent": percent(row.found),
             })
         })
         .collect();
     serde_json::json!({
         "seed": scene.spec.seed,
+        "calibration": calibration,
         "input_height_m": scene.adsorption.as_ref().map(|outcome| outcome.input_height.si()),
         "input_solid_share": scene.adsorption.as_ref().map(|outcome| outcome.input_solid_share.si()),
         "stones": packing.count(),
