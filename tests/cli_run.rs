@@ -1,0 +1,164 @@
+//! `run`: one target and many, kept results, failures among others, and Ctrl-C.
+
+mod cli_support;
+
+use std::fs;
+
+use cli_support::{COARSE, Place};
+
+#[test]
+fn a_result_is_kept_until_asked_otherwise() {
+    let place = Place::new();
+    place.build("a", &[]);
+    let first = place.json(&["run", "a", "--json"]);
+    assert_eq!(first["kept"], false);
+    assert_eq!(first["result"], "a/fdtd.h5");
+    assert_eq!(first["record"]["solver"], "fdtd");
+    let bytes = fs::read(place.path("a/fdtd.h5")).unwrap();
+    let second = place.json(&["run", "a", "--json"]);
+    assert_eq!(second["kept"], true);
+    assert_eq!(second["record"], first["record"]);
+    let third = place.json(&["run", "a", "--json", "--force"]);
+    assert_eq!(third["kept"], false);
+    assert!(fs::read(place.path("a/fdtd.h5")).unwrap() == bytes);
+    assert_eq!(place.json(&["run", "a", "--json", "--out", "deep.h5", "--precision", "double"])["result"], "deep.h5");
+    assert!(fs::read(place.path("deep.h5")).unwrap() != bytes);
+}
+
+/// An input file alone, outside every folder of this program, gives the same trace as the folder it came from.
+#[test]
+fn an_input_file_runs_by_itself() {
+    let place = Place::new();
+    place.build("a", &["--geometry", "cylinders"]);
+    fs::copy(place.path("a/model.in"), place.path("alone.in")).unwrap();
+    let run = place.json(&["run", "alone.in", "--json"]);
+    assert_eq!(run["result"], "alone.h5");
+    place.ok(&["run", "a"]);
+    assert!(fs::read(place.path("alone.h5")).unwrap() == fs::read(place.path("a/fdtd.h5")).unwrap());
+}
+
+/// A result whose model was built anew is refused, and taken again with `--force`.
+#[test]
+fn a_stale_result_is_never_passed_off() {
+    let place = Place::new();
+    place.build("a", &[]);
+    place.ok(&["run", "a"]);
+    place.build("a", &["--seed", "2", "--force"]);
+    let old = fs::read(place.path("a/fdtd.h5")).unwrap();
+    let error = place.fails(&["run", "a"], 2);
+    assert!(error.contains("`a/fdtd.h5` exists already, of another model"), "{error}");
+    assert!(fs::read(place.path("a/fdtd.h5")).unwrap() == old);
+    place.ok(&["run", "a", "--force"]);
+    assert!(fs::read(place.path("a/fdtd.h5")).unwrap() != old);
+    fs::remove_file(place.path("a/fdtd.run.json")).unwrap();
+    let error = place.fails(&["run", "a"], 2);
+    assert!(error.contains("nothing beside it says what made it"), "{error}");
+}
+
+/// One folder that cannot run does not stop the others; the second call keeps what the first gave.
+#[test]
+fn a_failure_among_many_is_told_and_the_rest_finishes() {
+    let place = Place::new();
+    place.ok(&[&["build", "--out", "many", "--realisations", "3"], &COARSE[..]].concat());
+    fs::write(place.path("many/seed-2/model.in"), "#domain: 1 1 0.002\n").unwrap();
+    let targets = ["run", "many/seed-1", "many/seed-2", "many/seed-3"];
+    let output = place.program().args(targets).assert().code(1).get_output().clone();
+    let (told, error) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
+    assert!(told.starts_with("3 runs, 1 failed\n"), "{told}");
+    let reason = "many/seed-2: `many/seed-2/model.in` has no `#dx_dy_dz`\n\nhint: write for example `#dx_dy_dz: 0.002 0.002 0.002`\n\n";
+    assert!(error.starts_with(reason), "{error}");
+    assert!(error.ends_with("error: 1 of 3 runs failed; the others are complete\n"), "{error}");
+    for (seed, there) in [(1, true), (2, false), (3, true)] {
+        assert_eq!(place.path(&format!("many/seed-{seed}/fdtd.h5")).exists(), there, "seed {seed}");
+    }
+    let output = place.program().args(targets).arg("--json").assert().code(1).get_output().clone();
+    let rows: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((&rows[0]["kept"], &rows[2]["kept"]), (&true.into(), &true.into()));
+    assert_eq!(rows[1]["target"], "many/seed-2");
+    assert!(rows[1]["error"].as_str().unwrap().starts_with("`many/seed-2/model.in` has no"));
+    let forced = place.program().args(["run", "many/seed-1", "many/seed-3", "--json", "--force"]).output().unwrap();
+    let rows: serde_json::Value = serde_json::from_slice(&forced.stdout).unwrap();
+    assert_eq!((&rows[0]["kept"], &rows[1]["kept"]), (&false.into(), &false.into()));
+}
+
+/// Ctrl-C, as the signal that it is.
+#[cfg(unix)]
+mod interrupted {
+    use std::process::{Child, Command, Output, Stdio};
+    use std::time::{Duration, Instant};
+
+    use super::*;
+
+    /// A model that runs for minutes: seconds before it is stopped are far from its end.
+    fn long(place: &Place, name: &str) {
+        place.ok(&["build", "--out", name, "--homogeneous", "--cell", "1mm", "--time-window", "900ns"]);
+    }
+
+    fn start(place: &Place, arguments: &[&str]) -> Child {
+        let program = place.program().get_program().to_owned();
+        let mut command = Command::new(program);
+        command.args(arguments).current_dir(place.path("")).stdout(Stdio::piped()).stderr(Stdio::piped());
+        command.spawn().unwrap()
+    }
+
+    fn interrupt(child: Child) -> Output {
+        std::thread::sleep(Duration::from_millis(1500));
+        let asked = Instant::now();
+        assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+        let output = child.wait_with_output().unwrap();
+        assert!(asked.elapsed() < Duration::from_secs(8), "{:?}", asked.elapsed());
+        assert_eq!(output.status.code(), Some(130), "{}", String::from_utf8_lossy(&output.stderr));
+        output
+    }
+
+    #[test]
+    fn a_run_that_is_stopped_leaves_nothing_and_can_be_repeated() {
+        let place = Place::new();
+        long(&place, "a");
+        let before = place.files("");
+        let output = interrupt(start(&place, &["run", "a"]));
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(
+            error,
+            "\nstopping; nothing half-written stays (Ctrl-C again ends at once)\nerror: stopped on request\n"
+        );
+        assert!(place.files("") == before, "{:?}", place.names(""));
+        place.build("a", &["--force"]);
+        place.ok(&["run", "a"]);
+    }
+
+    /// The short run is done and kept; the long ones, and nothing of them, are stopped with the program.
+    #[test]
+    fn a_batch_that_is_stopped_keeps_what_is_done() {
+        let place = Place::new();
+        place.build("short", &[]);
+        long(&place, "first");
+        long(&place, "second");
+        let before = place.files("");
+        let output = interrupt(start(&place, &["run", "short", "first", "second", "--jobs", "2", "--json"]));
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert!(error.ends_with("error: stopped on request; start the same command again to go on\n"), "{error}");
+        let rows: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(rows[0]["kept"], false);
+        assert_eq!(rows[1]["error"], "stopped on request");
+        let mut after = place.files("");
+        assert!(after.remove(&std::path::PathBuf::from("short/fdtd.h5")).is_some());
+        assert!(after.remove(&std::path::PathBuf::from("short/fdtd.run.json")).is_some());
+        assert!(after == before, "{:?}", place.names(""));
+        assert_eq!(place.json(&["run", "short", "--threads", "1", "--json"])["kept"], true);
+    }
+
+    /// gprMax that is stopped is no gprMax that failed: exit code 130, no log, and the process is gone.
+    #[test]
+    fn gprmax_that_is_stopped_leaves_nothing() {
+        use std::os::unix::fs::PermissionsExt as _;
+        let place = Place::new();
+        place.build("a", &[]);
+        let versions = "case \"$*\" in *versions*) echo versions 3.12.0 4.0.1 3.0; exit 0;; esac";
+        place.write("python", format!("#!/bin/sh\n{versions}\necho started\nsleep 30\ntouch survived\n"));
+        fs::set_permissions(place.path("python"), fs::Permissions::from_mode(0o755)).unwrap();
+        let before = place.files("");
+        interrupt(start(&place, &["run", "a", "--solver", "gprmax", "--gprmax-python", "./python"]));
+        assert!(place.files("") == before, "{:?}", place.names(""));
+    }
+}
