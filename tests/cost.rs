@@ -15,7 +15,9 @@ fn finer_cells_err_less_and_cost_more() {
     let bytes = |model: &ballast_gpr::model::Model| 12 * model.grid.cell_count() as u64;
     let solvers = [CostSolver { solver: &solver, double_precision: false, bytes: &bytes }];
     let cells = [Metres(0.008), Metres(0.004), Metres(0.002)];
-    let table = cost_curve(&CostScene::standard().unwrap(), &cells, &solvers, &|_, _| {}, &|_| ControlFlow::Continue(())).unwrap();
+    let table =
+        cost_curve(&CostScene::standard().unwrap(), &cells, &solvers, &|_, _| {}, &|_| ControlFlow::Continue(()))
+            .unwrap();
     for point in &table.points {
         eprintln!("{:?}: {:.2} %", point.setting, 100.0 * point.error);
     }

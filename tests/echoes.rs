@@ -32,7 +32,8 @@ fn late(spec: &SceneSpec, reference: &PlateReference) -> f64 {
 #[test]
 fn the_equivalent_stone_brings_the_plate_echo_back() {
     let mut spec = tank();
-    let reference = plate_reference(&Fdtd::default(), &resolve(&spec).unwrap(), &|_| ControlFlow::Continue(())).unwrap();
+    let reference =
+        plate_reference(&Fdtd::default(), &resolve(&spec).unwrap(), &|_| ControlFlow::Continue(())).unwrap();
     let uncorrected = late(&spec, &reference);
     spec.packing.stone_permittivity = EquivalentStone::Equivalent2d;
     let corrected = late(&spec, &reference);
@@ -46,7 +47,8 @@ fn the_equivalent_stone_brings_the_plate_echo_back() {
 fn fouling_delays_the_plate_and_not_the_surface() {
     let clean = tank();
     let fouled = SceneSpec { fouling: Some(FoulingSpec::of("20cm".parse().unwrap())), ..clean.clone() };
-    let reference = plate_reference(&Fdtd::default(), &resolve(&clean).unwrap(), &|_| ControlFlow::Continue(())).unwrap();
+    let reference =
+        plate_reference(&Fdtd::default(), &resolve(&clean).unwrap(), &|_| ControlFlow::Continue(())).unwrap();
     let echoes = |spec: &SceneSpec| {
         let scene = resolve(spec).unwrap();
         simulate_echoes(&Fdtd::default(), &scene, &reference, &|_| ControlFlow::Continue(())).unwrap().1

@@ -18,7 +18,13 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("gprmax", &["units", "trace", "material", "model", "geometry", "forward", "files"]),
     ("fdtd", &["units", "trace", "material", "model", "forward", "files"]),
     ("compare", &["units", "trace"]),
-    ("study", &["units", "files", "trace", "geometry", "material", "model", "packing", "scene", "raster", "forward", "compare"]),
+    (
+        "study",
+        &[
+            "units", "files", "trace", "geometry", "material", "model", "packing", "scene", "raster", "forward",
+            "compare",
+        ],
+    ),
     ("plot", &["units", "files"]),
 ];
 /// A kernel file computes; it never reads, writes, logs, allocates or fails.
@@ -45,7 +51,8 @@ fn sources() -> Vec<(String, String, String)> {
         .into_iter()
         .map(|file| {
             let inside = file.strip_prefix(&src).unwrap();
-            let module = inside.components().next().unwrap().as_os_str().to_str().unwrap().trim_end_matches(".rs").to_string();
+            let module =
+                inside.components().next().unwrap().as_os_str().to_str().unwrap().trim_end_matches(".rs").to_string();
             (module, inside.display().to_string(), fs::read_to_string(&file).unwrap())
         })
         .collect()
@@ -115,7 +122,10 @@ fn the_crate_doc_shows_the_same_table() {
     }
     let declared: Vec<_> = text.lines().filter_map(|line| line.strip_prefix("pub mod ")?.strip_suffix(';')).collect();
     for module in &declared {
-        assert!(*module == "cli" || MAY_IMPORT.iter().any(|(name, _)| name == module), "`{module}` is not in the table");
+        assert!(
+            *module == "cli" || MAY_IMPORT.iter().any(|(name, _)| name == module),
+            "`{module}` is not in the table"
+        );
     }
     assert_eq!(declared.len(), MAY_IMPORT.len() + 1);
 }

@@ -96,7 +96,8 @@ fn area_smoothing_keeps_the_stones_area() {
         let mut spec = spec.clone();
         spec.grid.smoothing = smoothing;
         let model = build_model(&resolve(&spec).unwrap()).unwrap();
-        let Some(Object::Voxels(voxels)) = model.objects.iter().find(|object| matches!(object, Object::Voxels(_))) else {
+        let Some(Object::Voxels(voxels)) = model.objects.iter().find(|object| matches!(object, Object::Voxels(_)))
+        else {
             panic!("no voxels")
         };
         let sum: f64 = voxels.cells.iter().flatten().map(|id| (model.materials[id.index()].eps_r - 1.0) / 5.5).sum();
@@ -142,7 +143,10 @@ fn bad_scenes_are_refused_word_for_word() {
             "[packing]\nvoids = \"0%\"",
             "voids of 0% leave no space between the stones\n\nhint: the tank of Benedetto et al. 2018 had 42%",
         ),
-        ("[packing]\nvoids = \"100%\"", "voids of 100% leave no stones\n\nhint: the tank of Benedetto et al. 2018 had 42%"),
+        (
+            "[packing]\nvoids = \"100%\"",
+            "voids of 100% leave no stones\n\nhint: the tank of Benedetto et al. 2018 had 42%",
+        ),
         (
             "[fouling]\namount = \"60cm\"",
             "fouling 60 cm high is more than the bed takes: with all voids full it is 48 cm high\n\nhint: ask for 48 cm high or less",

@@ -47,7 +47,8 @@ fn message_of(stderr: &[u8]) -> String {
 /// # Errors
 /// When one of them failed, after all have finished.
 pub fn run_many(args: &RunArgs) -> Result<(), CliError> {
-    let program = std::env::current_exe().map_err(|error| CliError::new(Kind::Fault, format!("cannot find this program: {error}")))?;
+    let program = std::env::current_exe()
+        .map_err(|error| CliError::new(Kind::Fault, format!("cannot find this program: {error}")))?;
     let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
     let threads = args.threads.map_or(1, |n| n.get());
     let jobs = args.jobs.map_or((cores / threads).max(1), |n| n.get()).min(args.targets.len());
@@ -73,9 +74,8 @@ pub fn run_many(args: &RunArgs) -> Result<(), CliError> {
                         command.arg("--gprmax-python").arg(python);
                     }
                     let outcome = match child::output(&mut command) {
-                        Ok(output) if output.status.success() => {
-                            serde_json::from_slice(&output.stdout).map_err(|error| Failure::Failed(format!("unreadable outcome: {error}")))
-                        }
+                        Ok(output) if output.status.success() => serde_json::from_slice(&output.stdout)
+                            .map_err(|error| Failure::Failed(format!("unreadable outcome: {error}"))),
                         Ok(_) if interrupt::requested() => Err(Failure::Stopped),
                         Ok(output) => Err(Failure::Failed(message_of(&output.stderr))),
                         Err(error) => Err(Failure::Failed(format!("cannot start: {error}"))),
@@ -135,7 +135,10 @@ fn report(args: &RunArgs, finished: &[(usize, Finished)]) -> Result<(), CliError
         return Err(CliError::new(Kind::Interrupted, "stopped on request; start the same command again to go on"));
     }
     if failed > 0 {
-        return Err(CliError::new(Kind::Verdict, format!("{failed} of {} runs failed; the others are complete", finished.len())));
+        return Err(CliError::new(
+            Kind::Verdict,
+            format!("{failed} of {} runs failed; the others are complete", finished.len()),
+        ));
     }
     Ok(())
 }

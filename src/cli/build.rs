@@ -8,11 +8,11 @@ use clap::Args;
 use crate::cli::cost_choice;
 use crate::cli::error::CliError;
 use crate::cli::folder;
+use crate::cli::interrupt;
 use crate::cli::manifest::{Manifest, Seconds};
+use crate::cli::map_figure;
 use crate::cli::pack;
 use crate::cli::scene_args::SceneArgs;
-use crate::cli::map_figure;
-use crate::cli::interrupt;
 use crate::files;
 use crate::gprmax::{self, InputOptions};
 use crate::model;
@@ -60,7 +60,11 @@ pub fn run(args: &BuildArgs) -> Result<(), CliError> {
         eprintln!("{}", choice.sentence());
         (spec.grid.cell, spec.grid.smoothing) = (choice.cell, choice.smoothing);
     }
-    let template = args.template.as_deref().map(|path| Ok::<_, CliError>((path.display().to_string(), files::read_text(path)?))).transpose()?;
+    let template = args
+        .template
+        .as_deref()
+        .map(|path| Ok::<_, CliError>((path.display().to_string(), files::read_text(path)?)))
+        .transpose()?;
     let base = args.out.clone().unwrap_or_else(|| default_folder(&spec, args.realisations));
     let mut manifests = Vec::new();
     for index in 0..args.realisations {
@@ -79,7 +83,8 @@ pub fn run(args: &BuildArgs) -> Result<(), CliError> {
     if args.json {
         println!("{}", serde_json::to_string_pretty(&manifests)?);
     } else {
-        let next = if args.realisations == 1 { folder::typed(&base) } else { format!("{}/seed-*", folder::typed(&base)) };
+        let next =
+            if args.realisations == 1 { folder::typed(&base) } else { format!("{}/seed-*", folder::typed(&base)) };
         eprintln!("\nnext: ballast-gpr run {next}");
     }
     Ok(())
@@ -89,7 +94,12 @@ pub fn run(args: &BuildArgs) -> Result<(), CliError> {
 ///
 /// # Errors
 /// When the scene cannot be built or written.
-pub fn build_folder(spec: &SceneSpec, target: &Path, template: Option<(String, String)>, force: bool) -> Result<Manifest, CliError> {
+pub fn build_folder(
+    spec: &SceneSpec,
+    target: &Path,
+    template: Option<(String, String)>,
+    force: bool,
+) -> Result<Manifest, CliError> {
     let mut scene = scene::resolve(spec)?;
     let started = Instant::now();
     let model = raster::build_model(&scene)?;
@@ -107,7 +117,8 @@ pub fn build_folder(spec: &SceneSpec, target: &Path, template: Option<(String, S
     pack::write_scene(&mut scene, target)?;
     gprmax::write_input(&model, target, "model", &InputOptions { template })?;
     map_figure::write(&scene, &model, &painted, target)?;
-    let seconds = Seconds { packing: scene.packing_seconds, raster: raster_seconds, writing: started.elapsed().as_secs_f64() };
+    let seconds =
+        Seconds { packing: scene.packing_seconds, raster: raster_seconds, writing: started.elapsed().as_secs_f64() };
     let manifest = Manifest::of(&scene, &model, &painted, seconds)?;
     manifest.write(&target.join(folder::MANIFEST))?;
     Ok(manifest)

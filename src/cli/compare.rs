@@ -10,7 +10,9 @@ use crate::cli::folder;
 use crate::cli::manifest::{self, Window};
 use crate::cli::table::Report;
 use crate::cli::trace_file;
-use crate::compare::{self, CompareOptions, Comparison, EchoPick, ExpectedEchoes, Normalisation, Polarity, TimeError, TimeZero};
+use crate::compare::{
+    self, CompareOptions, Comparison, EchoPick, ExpectedEchoes, Normalisation, Polarity, TimeError, TimeZero,
+};
 use crate::files;
 use crate::plot::Figure as _;
 use crate::trace::AScan;
@@ -171,7 +173,11 @@ fn compare_files(args: &CompareArgs, first: &Path, second: &Path) -> Result<Comp
             PolarityFlag::Flip => Polarity::Flip,
         },
         window: args.window,
-        expected: if args.time_zero == TimeZeroFlag::Keep { expected(&[first, second])? } else { ExpectedEchoes::default() },
+        expected: if args.time_zero == TimeZeroFlag::Keep {
+            expected(&[first, second])?
+        } else {
+            ExpectedEchoes::default()
+        },
         ..CompareOptions::default()
     };
     Ok(compare::compare(&a, &b, &options)?)
@@ -266,7 +272,12 @@ pub fn table(comparison: &Comparison) -> Report {
         ("plate echo", &picks_a.plate, &picks_b.plate, &metrics.plate_time_error),
     ] {
         for (how, envelope) in [("waveform", false), ("envelope", true)] {
-            table.row([format!("{name}, {how}, ns"), time(pick_a, envelope), time(pick_b, envelope), error(found, envelope)]);
+            table.row([
+                format!("{name}, {how}, ns"),
+                time(pick_a, envelope),
+                time(pick_b, envelope),
+                error(found, envelope),
+            ]);
         }
     }
     let mut single = |name: &str, value: String| table.row([name.into(), String::new(), String::new(), value]);

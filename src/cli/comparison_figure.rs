@@ -29,7 +29,8 @@ pub fn figure(title: &str, comparison: &Comparison) -> Panels {
         curve(&comparison.envelope_a),
         curve(&comparison.envelope_b),
     );
-    let highest = 3.0 * comparison.spectrum_a.peak_frequency.si().max(comparison.spectrum_b.peak_frequency.si()).max(1.0);
+    let highest =
+        3.0 * comparison.spectrum_a.peak_frequency.si().max(comparison.spectrum_b.peak_frequency.si()).max(1.0);
     let amplitudes = |spectrum: &Spectrum| {
         let points = spectrum.amplitude.iter().enumerate().map(|(k, v)| (spectrum.frequency(k), *v));
         points.take_while(|(f, _)| *f <= highest).map(|(f, v)| (1e-9 * f, v)).collect::<Vec<_>>()

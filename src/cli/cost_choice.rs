@@ -51,7 +51,8 @@ pub fn table() -> Result<(CostTable, &'static str), CliError> {
         Some(path) => (crate::files::read_text(path)?, "your own cost table"),
         None => (BUILT_IN.to_string(), "the built-in cost table"),
     };
-    let table = serde_json::from_str(&text).map_err(|error| CliError::input(format!("{from} cannot be read: {error}")))?;
+    let table =
+        serde_json::from_str(&text).map_err(|error| CliError::input(format!("{from} cannot be read: {error}")))?;
     Ok((table, from))
 }
 

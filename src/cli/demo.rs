@@ -98,7 +98,10 @@ pub fn run(args: &DemoArgs) -> Result<(), CliError> {
     };
     let mut exact = None;
     for (spec, name, trace) in [(&clean, "clean", &traces[0]), (&fouled, "20 cm of fouling", &traces[1])] {
-        let layered = SceneSpec { packing: crate::scene::PackingSpec { method: PackingMethod::Homogeneous, ..spec.packing.clone() }, ..spec.clone() };
+        let layered = SceneSpec {
+            packing: crate::scene::PackingSpec { method: PackingMethod::Homogeneous, ..spec.packing.clone() },
+            ..spec.clone()
+        };
         let layered = resolve(&layered)?;
         let (_, echoes) = simulate_echoes(&solver, &layered, &reference, &on_progress)?;
         row(&format!("{name}, homogeneous layers"), &echoes, &layered);
@@ -125,7 +128,11 @@ pub fn run(args: &DemoArgs) -> Result<(), CliError> {
         for (target, _) in &folders {
             if let Some([fdtd, gprmax]) = trace_file::both_results(target) {
                 let (ours, theirs) = (trace_file::read(&fdtd)?, trace_file::read(&gprmax)?);
-                println!("{}: built-in solver against gprMax, relative L2 difference {:.1e}", target.display(), compare::relative_l2(&theirs, &ours)?);
+                println!(
+                    "{}: built-in solver against gprMax, relative L2 difference {:.1e}",
+                    target.display(),
+                    compare::relative_l2(&theirs, &ours)?
+                );
             }
         }
     }
@@ -184,7 +191,8 @@ fn write_comparison(
     let mut comparison = compare::compare(clean, fouled, &options)?;
     comparison.a.name = "clean".into();
     comparison.b.name = "20 cm of fouling".into();
-    comparison_figure::figure("Tank of Benedetto et al. 2018, simulated at 1 GHz, direct wave taken off", &comparison).write(folder, "demo")?;
+    comparison_figure::figure("Tank of Benedetto et al. 2018, simulated at 1 GHz, direct wave taken off", &comparison)
+        .write(folder, "demo")?;
     let mut text = serde_json::to_string_pretty(&comparison)?;
     text.push('\n');
     files::write_bytes(&folder.join("demo.json"), text.as_bytes())?;

@@ -36,7 +36,8 @@ pub struct ExplainArgs {
 /// # Errors
 /// When the target cannot be read or the scene resolved.
 pub fn run(args: &ExplainArgs) -> Result<(), CliError> {
-    let is_input = args.target.as_ref().is_some_and(|path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("in")));
+    let is_input =
+        args.target.as_ref().is_some_and(|path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("in")));
     let (scene, model) = if let (true, Some(path)) = (is_input, &args.target) {
         if args.args != SceneArgs::default() {
             return Err(CliError::input(format!(
@@ -89,7 +90,12 @@ pub fn run(args: &ExplainArgs) -> Result<(), CliError> {
     }
     for effect in &effects.list {
         let memory = if effect.bytes > 0 { human_bytes(effect.bytes) } else { "–".into() };
-        table.row([effect.name.to_string(), if effect.on { "on" } else { "off" }.into(), effect.reason.clone(), memory]);
+        table.row([
+            effect.name.to_string(),
+            if effect.on { "on" } else { "off" }.into(),
+            effect.reason.clone(),
+            memory,
+        ]);
     }
     table.print();
     if let Some(resolution) = &resolution {
@@ -118,7 +124,13 @@ fn scene_effects(scene: &Scene) -> Vec<(&'static str, bool, String)> {
     let fouling = match (&spec.fouling, scene.bed.fouled_height > 0.0) {
         (Some(fouling), true) => {
             let height = Metres(scene.bed.fouled_height).in_unit("cm");
-            (true, format!("{} of `{}` fills {} of the voids up to {height}", fouling.amount, fouling.material, fouling.filling))
+            (
+                true,
+                format!(
+                    "{} of `{}` fills {} of the voids up to {height}",
+                    fouling.amount, fouling.material, fouling.filling
+                ),
+            )
         }
         (Some(fouling), false) => (false, format!("the scene asks for {}", fouling.amount)),
         (None, _) => (false, "the scene has no `[fouling]`".into()),
@@ -175,7 +187,9 @@ fn print_scene(scene: &Scene) {
         row("height, % of the bed", &|i| format!("{:.1}", i.height_percent));
         row("percentage void contamination", &|i| format!("{:.1}", i.percentage_void_contamination));
         row("void contaminant index", &|i| format!("{:.1}", i.void_contaminant_index));
-        row("relative ballast fouling ratio", &|i| format!("{:.1} ({})", i.relative_ballast_fouling_ratio, i.relative_class.name()));
+        row("relative ballast fouling ratio", &|i| {
+            format!("{:.1} ({})", i.relative_ballast_fouling_ratio, i.relative_class.name())
+        });
         row("Selig's fouling index", &|i| match (i.selig, i.selig_class) {
             (Some(index), Some(class)) => format!("{index:.1} ({})", class.name()),
             _ => "–".into(),
@@ -183,7 +197,10 @@ fn print_scene(scene: &Scene) {
         row("mass, % of stones and fines", &|i| format!("{:.1}", i.mass_percent));
         row("volume, % of the bed", &|i| format!("{:.1}", i.volume_percent));
         table.print();
-        println!("volume, % of bed and base plate (Benedetto 2017, Table 4): {:.1}\n", fouling.volume_percent_of_column);
+        println!(
+            "volume, % of bed and base plate (Benedetto 2017, Table 4): {:.1}\n",
+            fouling.volume_percent_of_column
+        );
     }
 }
 

@@ -22,7 +22,10 @@ const MODEL_FILES: [&str; 3] = [MODEL, "model_geometry.h5", "model_materials.jso
 pub fn prepare(folder: &Path, force: bool) -> Result<(), CliError> {
     let occupied = fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some());
     if folder.is_file() {
-        return Err(CliError::input(format!("`{}` is a file, not a folder\n\nhint: choose another name with `--out`", folder.display())));
+        return Err(CliError::input(format!(
+            "`{}` is a file, not a folder\n\nhint: choose another name with `--out`",
+            folder.display()
+        )));
     }
     if occupied && !force {
         return Err(CliError::input(format!(

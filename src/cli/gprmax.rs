@@ -44,7 +44,12 @@ pub fn run(args: &GprMaxArgs) -> Result<(), CliError> {
     };
     let version = gprmax::install::check(&interpreter)?;
     if json {
-        println!("{}", serde_json::to_string_pretty(&serde_json::json!({ "python": interpreter.python, "python_version": version.python, "gprmax_version": version.gprmax, "h5py_version": version.h5py }))?);
+        println!(
+            "{}",
+            serde_json::to_string_pretty(
+                &serde_json::json!({ "python": interpreter.python, "python_version": version.python, "gprmax_version": version.gprmax, "h5py_version": version.h5py })
+            )?
+        );
     } else {
         println!("gprMax {} works with {} (Python {})", version.gprmax, interpreter.python.display(), version.python);
     }

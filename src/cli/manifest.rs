@@ -132,9 +132,15 @@ impl Manifest {
     /// One line for people.
     pub fn summary(&self) -> String {
         let stones = self.packing.as_ref().map_or("homogeneous bed".to_string(), |packing| {
-            format!("{} stones, {:.1} cm, {:.1} % solid", packing.stones, 100.0 * packing.height_m, packing.solid_percent)
+            format!(
+                "{} stones, {:.1} cm, {:.1} % solid",
+                packing.stones,
+                100.0 * packing.height_m,
+                packing.solid_percent
+            )
         });
-        let fouling = self.fouling.as_ref().map_or("clean".to_string(), |f| format!("fouled to {}", f.height.in_unit("cm")));
+        let fouling =
+            self.fouling.as_ref().map_or("clean".to_string(), |f| format!("fouled to {}", f.height.in_unit("cm")));
         format!("{stones}, {fouling}, {} x {} cells", self.cells[0], self.cells[1])
     }
 

@@ -182,13 +182,18 @@ fn packing_figure(packing: &Packing, outcome: Option<&RsaOutcome>) -> PackingFig
 /// Input and output sieve curves, as in the paper's Fig. 8, with the standard's band where there is one.
 fn grading_chart(grading: &Grading, rows: &[GradingRow]) -> Chart {
     let mm = |row: &GradingRow| 1e3 * row.sieve.si();
-    let mut chart = Chart::new("Sieve curve", Axis::log10("sieve", "mm"), Axis::linear("passing", "%").between(0.0, 100.0))
-        .with(Series::line("input", rows.iter().map(|row| (mm(row), percent(row.wanted))).collect()))
-        .with(
-            Series::line("packing", rows.iter().map(|row| (mm(row), percent(row.found))).collect())
-                .drawn(Stroke::Dashed, 1),
-        );
-    let bands: Vec<_> = grading.sieves().iter().filter_map(|sieve| Some((1e3 * sieve.size.si(), sieve.lowest?, sieve.highest?))).collect();
+    let mut chart =
+        Chart::new("Sieve curve", Axis::log10("sieve", "mm"), Axis::linear("passing", "%").between(0.0, 100.0))
+            .with(Series::line("input", rows.iter().map(|row| (mm(row), percent(row.wanted))).collect()))
+            .with(
+                Series::line("packing", rows.iter().map(|row| (mm(row), percent(row.found))).collect())
+                    .drawn(Stroke::Dashed, 1),
+            );
+    let bands: Vec<_> = grading
+        .sieves()
+        .iter()
+        .filter_map(|sieve| Some((1e3 * sieve.size.si(), sieve.lowest?, sieve.highest?)))
+        .collect();
     if !bands.is_empty() {
         chart.bands.push(Band {
             name: format!("{} limits", grading.name()),
@@ -208,7 +213,10 @@ fn print(scene: &Scene, packing: &Packing, grading: &Grading) {
         table.row(["input solid share, %".into(), format!("{:.1}", 100.0 * outcome.input_solid_share.si())]);
     }
     table.row(["stones".into(), packing.count().to_string()]);
-    table.row(["diameters, mm".into(), format!("{:.1} to {:.1}", 1e3 * packing.smallest_diameter().si(), 1e3 * packing.largest_diameter().si())]);
+    table.row([
+        "diameters, mm".into(),
+        format!("{:.1} to {:.1}", 1e3 * packing.smallest_diameter().si(), 1e3 * packing.largest_diameter().si()),
+    ]);
     table.row(["height, cm".into(), format!("{:.2}", 100.0 * packing.top().si())]);
     table.row(["solid share up to that height, %".into(), format!("{:.2}", 100.0 * packing.solid_share().si())]);
     table.row(["solid share inside, %".into(), format!("{:.2}", 100.0 * packing.interior_solid_share().si())]);
@@ -229,7 +237,12 @@ fn print(scene: &Scene, packing: &Packing, grading: &Grading) {
     table.print();
 }
 
-fn statistics(scene: &Scene, packing: &Packing, grading: &Grading, calibration: Option<serde_json::Value>) -> serde_json::Value {
+fn statistics(
+    scene: &Scene,
+    packing: &Packing,
+    grading: &Grading,
+    calibration: Option<serde_json::Value>,
+) -> serde_json::Value {
     let rows: Vec<_> = packing
         .grading_table(grading)
         .iter()

@@ -28,8 +28,11 @@ impl Bar {
             && let Ok(mut shown) = self.shown.lock()
         {
             let bar = shown.get_or_insert_with(|| {
-                let bar = ProgressBar::with_draw_target(Some(progress.total as u64), ProgressDrawTarget::stderr_with_hz(5));
-                if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %  {elapsed_precise}, about {eta} left") {
+                let bar =
+                    ProgressBar::with_draw_target(Some(progress.total as u64), ProgressDrawTarget::stderr_with_hz(5));
+                if let Ok(style) =
+                    ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %  {elapsed_precise}, about {eta} left")
+                {
                     bar.set_style(style);
                 }
                 bar.set_message(self.label.clone());

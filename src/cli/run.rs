@@ -104,7 +104,9 @@ pub struct Outcome {
 pub fn run(args: &RunArgs) -> Result<(), CliError> {
     if args.targets.len() > 1 {
         if args.out.is_some() {
-            return Err(CliError::input("`--out` names one file, but there are several targets\n\nhint: leave `--out` out; each result goes into its folder"));
+            return Err(CliError::input(
+                "`--out` names one file, but there are several targets\n\nhint: leave `--out` out; each result goes into its folder",
+            ));
         }
         return batch::run_many(args);
     }
@@ -128,7 +130,9 @@ pub fn run_one(args: &RunArgs, target: &Path) -> Result<Outcome, CliError> {
     let fingerprint = folder::model_fingerprint(&input)?;
     if result.exists() && !args.force {
         let same = |record: &RunRecord| {
-            record.model == fingerprint && record.solver == args.solver.name() && record.precision == args.precision.name()
+            record.model == fingerprint
+                && record.solver == args.solver.name()
+                && record.precision == args.precision.name()
         };
         if let Some(record) = RunRecord::beside(&result).filter(same) {
             return Ok(Outcome { target: target.into(), result, kept: true, record });
@@ -174,7 +178,11 @@ fn paths(args: &RunArgs, target: &Path) -> Result<(PathBuf, PathBuf), CliError> 
         if !folder::is_built(target) {
             let scene = target.join(folder::SCENE);
             let build = if scene.is_file() {
-                format!("finish it with `ballast-gpr build {} --out {} --force`", folder::typed(&scene), folder::typed(target))
+                format!(
+                    "finish it with `ballast-gpr build {} --out {} --force`",
+                    folder::typed(&scene),
+                    folder::typed(target)
+                )
             } else {
                 "make a folder with one with `ballast-gpr build --out FOLDER`".to_string()
             };

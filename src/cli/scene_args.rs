@@ -93,7 +93,9 @@ impl SceneArgs {
             (Some(file), None) => SceneSpec::read(&scene_file(file)?)?,
             (None, preset) => SceneSpec::preset(preset.as_deref().unwrap_or("tank"))?,
             (Some(_), Some(_)) => {
-                return Err(CliError::input("a scene file and `--preset` were both given\n\nhint: leave one of them out"));
+                return Err(CliError::input(
+                    "a scene file and `--preset` were both given\n\nhint: leave one of them out",
+                ));
             }
         };
         self.apply(&mut spec)?;
@@ -131,15 +133,21 @@ impl SceneArgs {
         set(&mut spec.antenna.frequency, self.frequency);
         set(&mut spec.grid.cell, self.cell);
         set(&mut spec.grid.time_window, self.time_window);
-        set(&mut spec.grid.geometry, self.geometry.map(|geometry| match geometry {
-            Geometry::Voxels => GeometryKind::Voxels,
-            Geometry::Cylinders => GeometryKind::Cylinders,
-        }));
-        set(&mut spec.grid.smoothing, self.smoothing.map(|smoothing| match smoothing {
-            SmoothingFlag::None => Smoothing::None,
-            SmoothingFlag::Edges => Smoothing::Edges,
-            SmoothingFlag::Area => Smoothing::Area,
-        }));
+        set(
+            &mut spec.grid.geometry,
+            self.geometry.map(|geometry| match geometry {
+                Geometry::Voxels => GeometryKind::Voxels,
+                Geometry::Cylinders => GeometryKind::Cylinders,
+            }),
+        );
+        set(
+            &mut spec.grid.smoothing,
+            self.smoothing.map(|smoothing| match smoothing {
+                SmoothingFlag::None => Smoothing::None,
+                SmoothingFlag::Edges => Smoothing::Edges,
+                SmoothingFlag::Area => Smoothing::Area,
+            }),
+        );
         Ok(())
     }
 }

@@ -18,7 +18,12 @@ pub struct Report {
 impl Report {
     /// A table with a title and column heads.
     pub fn new<const N: usize>(title: impl Into<String>, header: [&str; N]) -> Self {
-        Self { title: title.into(), header: header.iter().map(ToString::to_string).collect(), rows: vec![], elsewhere: vec![] }
+        Self {
+            title: title.into(),
+            header: header.iter().map(ToString::to_string).collect(),
+            rows: vec![],
+            elsewhere: vec![],
+        }
     }
 
     /// Adds a row.
@@ -47,7 +52,11 @@ impl Report {
         }
         for (index, column) in table.column_iter_mut().enumerate() {
             let numeric = self.rows.iter().all(|row| {
-                row.get(index).is_none_or(|cell| cell.is_empty() || cell == "–" || cell.starts_with(|c: char| c.is_ascii_digit() || "+-−".contains(c)))
+                row.get(index).is_none_or(|cell| {
+                    cell.is_empty()
+                        || cell == "–"
+                        || cell.starts_with(|c: char| c.is_ascii_digit() || "+-−".contains(c))
+                })
             });
             if index > 0 && numeric {
                 column.set_cell_alignment(CellAlignment::Right);
@@ -59,14 +68,21 @@ impl Report {
     /// The same as JSON: one object per row, by column heads.
     pub fn json(&self) -> serde_json::Value {
         let row = |cells: &Vec<String>| {
-            self.header.iter().cloned().zip(cells.iter().cloned().map(Into::into)).collect::<serde_json::Map<_, _>>().into()
+            self.header
+                .iter()
+                .cloned()
+                .zip(cells.iter().cloned().map(Into::into))
+                .collect::<serde_json::Map<_, _>>()
+                .into()
         };
         self.rows.iter().map(row).collect::<Vec<serde_json::Value>>().into()
     }
 
     /// The same as Markdown.
     pub fn markdown(&self) -> String {
-        let line = |cells: &[String]| format!("| {} |\n", cells.iter().map(|c| c.replace('\n', " ")).collect::<Vec<_>>().join(" | "));
+        let line = |cells: &[String]| {
+            format!("| {} |\n", cells.iter().map(|c| c.replace('\n', " ")).collect::<Vec<_>>().join(" | "))
+        };
         let mut text = line(&self.header);
         text.push_str(&format!("|{}\n", "---|".repeat(self.header.len())));
         for (index, row) in self.rows.iter().enumerate() {

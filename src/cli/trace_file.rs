@@ -45,9 +45,10 @@ pub fn read(path: &Path) -> Result<AScan, CliError> {
     let name = short_name(&path);
     if is_hdf5(&path)? {
         let traces = gprmax::read_traces(&path)?;
-        let trace = traces.radar_trace().cloned().ok_or_else(|| {
-            CliError::input(format!("`{}` holds no electric field at a receiver", path.display()))
-        })?;
+        let trace = traces
+            .radar_trace()
+            .cloned()
+            .ok_or_else(|| CliError::input(format!("`{}` holds no electric field at a receiver", path.display())))?;
         return Ok(AScan { name, ..trace });
     }
     let text = files::read_text(&path)?;
@@ -62,7 +63,8 @@ pub fn built_folder(target: &Path) -> Option<PathBuf> {
 
 /// The last two parts of a path: enough to tell siblings apart.
 fn short_name(path: &Path) -> String {
-    let parts: Vec<_> = path.components().rev().take(2).map(|part| part.as_os_str().to_string_lossy().into_owned()).collect();
+    let parts: Vec<_> =
+        path.components().rev().take(2).map(|part| part.as_os_str().to_string_lossy().into_owned()).collect();
     parts.into_iter().rev().collect::<Vec<_>>().join("/")
 }
 

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use crate::geometry::Disc;
 use crate::model::{
-    Axis, DebyePole, Excitation, HertzianDipole, Material, MaterialId, Model, Object, Receiver, Source, TimeWindow, Voxels,
-    Waveform,
+    Axis, DebyePole, Excitation, HertzianDipole, Material, MaterialId, Model, Object, Receiver, Source, TimeWindow,
+    Voxels, Waveform,
 };
 use crate::scene::{GeometryKind, Medium, PackingMethod, Scene, Smoothing};
 
@@ -20,7 +20,9 @@ const AREA_LEVELS: usize = 32;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RasterError {
     /// Area smoothing needs cells, not cylinders.
-    #[error("`smoothing = \"area\"` cannot be written as cylinders\n\nhint: use `--geometry voxels`, or `--smoothing edges`")]
+    #[error(
+        "`smoothing = \"area\"` cannot be written as cylinders\n\nhint: use `--geometry voxels`, or `--smoothing edges`"
+    )]
     AreaNeedsVoxels,
     /// More cells than can be counted sensibly.
     #[error(

@@ -2,8 +2,6 @@
 
 use crate::geometry::{Disc, disc_rectangle_area};
 
-
-
 /// A block of square cells.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Block {

@@ -17,8 +17,20 @@ pub(super) fn check(spec: &SceneSpec) -> Result<(), SceneError> {
     positive("antenna.height", spec.antenna.height, "`height = \"40 cm\"` under `[antenna]`")?;
     not_negative("antenna.separation", spec.antenna.separation)?;
     positive("packing.strip", spec.packing.strip, "`strip = \"2 cm\"` under `[packing]`")?;
-    require(spec.antenna.frequency.si() > 0.0, "antenna.frequency", &spec.antenna.frequency, "above 0 GHz", "`--frequency 1GHz`")?;
-    require(spec.grid.time_window.si() > 0.0, "grid.time_window", &spec.grid.time_window, "above 0 ns", "`--time-window 25ns`")?;
+    require(
+        spec.antenna.frequency.si() > 0.0,
+        "antenna.frequency",
+        &spec.antenna.frequency,
+        "above 0 GHz",
+        "`--frequency 1GHz`",
+    )?;
+    require(
+        spec.grid.time_window.si() > 0.0,
+        "grid.time_window",
+        &spec.grid.time_window,
+        "above 0 ns",
+        "`--time-window 25ns`",
+    )?;
     let widest = tank.width.si().min(tank.height.si());
     require(
         spec.grid.cell.si() <= widest / 10.0,

@@ -54,13 +54,17 @@ pub enum SceneError {
         hint: String,
     },
     /// A fouling amount that cannot be read.
-    #[error("`{text}` is not an amount of fouling\n\nhint: write a height (`20cm`), `40% of voids`, `16% by volume` or `14% by mass`")]
+    #[error(
+        "`{text}` is not an amount of fouling\n\nhint: write a height (`20cm`), `40% of voids`, `16% by volume` or `14% by mass`"
+    )]
     FoulingText {
         /// What the user wrote.
         text: String,
     },
     /// Water for fines that are not there.
-    #[error("`moisture.fines` is {moisture}, but this bed has no fines\n\nhint: add some with `--fouling 20cm`; water between clean stones is `voids = \"5%\"` under `[moisture]`")]
+    #[error(
+        "`moisture.fines` is {moisture}, but this bed has no fines\n\nhint: add some with `--fouling 20cm`; water between clean stones is `voids = \"5%\"` under `[moisture]`"
+    )]
     NoFines {
         /// What the user wrote.
         moisture: Share,
@@ -76,7 +80,9 @@ pub enum SceneError {
         tank: Metres,
     },
     /// `method = "file"` without a file.
-    #[error("`packing.method` is \"file\", but `packing.file` names no file\n\nhint: add `file = \"packing.csv\"` under `[packing]`")]
+    #[error(
+        "`packing.method` is \"file\", but `packing.file` names no file\n\nhint: add `file = \"packing.csv\"` under `[packing]`"
+    )]
     NoPackingFile,
     /// The packing failed.
     #[error(transparent)]

@@ -95,7 +95,9 @@ mod tests {
             let message = wrong.parse::<FoulingAmount>().unwrap_err().to_string();
             assert_eq!(
                 message,
-                format!("`{wrong}` is not an amount of fouling\n\nhint: write a height (`20cm`), `40% of voids`, `16% by volume` or `14% by mass`")
+                format!(
+                    "`{wrong}` is not an amount of fouling\n\nhint: write a height (`20cm`), `40% of voids`, `16% by volume` or `14% by mass`"
+                )
             );
         }
     }

@@ -77,11 +77,17 @@ pub(super) fn bed(spec: &SceneSpec, fouled_height: f64) -> Result<(Bed, Vec<Bulk
             let dry = medium(spec, &fouling.material)?;
             let fines = moistened(&dry, spec.moisture.map_or(Share(0.0), |moisture| moisture.fines), centre)?;
             let name = format!("{}_and_voids", fines.name);
-            mixed(&name, packing.mixing, &[(fouling.filling, &fines), (Share(1.0 - fouling.filling.si()), &void_clean)], centre)?
+            mixed(
+                &name,
+                packing.mixing,
+                &[(fouling.filling, &fines), (Share(1.0 - fouling.filling.si()), &void_clean)],
+                centre,
+            )?
         }
         _ => void_clean.clone(),
     };
-    let bulk = |name: &str, void: &Medium| mixed(name, packing.mixing, &[(solid, &stone), (packing.voids, void)], centre);
+    let bulk =
+        |name: &str, void: &Medium| mixed(name, packing.mixing, &[(solid, &stone), (packing.voids, void)], centre);
     let (bulk_clean, bulk_fouled) = (bulk("clean_ballast", &void_clean)?, bulk("fouled_ballast", &void_fouled)?);
     let equivalent = |suffix: &str, void: &Medium| -> Result<Medium, SceneError> {
         if packing.stone_permittivity == EquivalentStone::True {

@@ -20,6 +20,6 @@ pub use fouling::{FoulingAmount, FoulingReport};
 pub use medium::{MaterialSpec, Medium};
 pub use resolve::{Scene, resolve, rsa_input};
 pub use spec::{
-    AntennaSpec, EquivalentStone, FoulingSpec, GeometryKind, GradingSpec, GridSpec, MoistureSpec, PackingMethod, PackingSpec,
-    SceneSpec, Smoothing, TankSpec,
+    AntennaSpec, EquivalentStone, FoulingSpec, GeometryKind, GradingSpec, GridSpec, MoistureSpec, PackingMethod,
+    PackingSpec, SceneSpec, Smoothing, TankSpec,
 };

@@ -196,7 +196,11 @@ fn one_run(
     Ok((point, trace))
 }
 
-fn radar_trace(solver: &dyn Forward, model: &crate::model::Model, on_progress: OnProgress<'_>) -> Result<AScan, EchoError> {
+fn radar_trace(
+    solver: &dyn Forward,
+    model: &crate::model::Model,
+    on_progress: OnProgress<'_>,
+) -> Result<AScan, EchoError> {
     solver.solve(model, on_progress).map_err(EchoError::from)?.radar_trace().cloned().ok_or(EchoError::NoTrace)
 }
 

@@ -154,8 +154,13 @@ impl PlateReference {
     pub fn echoes(&self, scene: &Scene, trace: &AScan) -> Result<Echoes, EchoError> {
         let (echoes_only, _) = compare::subtract_reference(trace, &self.free_space);
         let (surface, plate) = self.windows(scene);
-        let expected =
-            ExpectedEchoes { surface: Some(surface), plate: Some(plate), no_direct_wave: true, no_noise: true, ..Default::default() };
+        let expected = ExpectedEchoes {
+            surface: Some(surface),
+            plate: Some(plate),
+            no_direct_wave: true,
+            no_noise: true,
+            ..Default::default()
+        };
         let picks = compare::pick_echoes(&echoes_only, &expected);
         Ok(Echoes {
             surface: self.time_of(&pick("surface", picks.surface)?),

@@ -17,7 +17,12 @@ fn bed(nx: usize, ny: usize, steps: usize, host: Material, stone: Material) -> M
     let (width, height) = (nx as f64 * d, ny as f64 * d);
     let mut model = Model::new("bench", Grid { cells: [nx, ny, 1], spacing: [d; 3] }, TimeWindow::Iterations(steps));
     let (host, stone) = (model.add_material(host), model.add_material(stone));
-    model.objects.push(Object::Box { lower: [0.0; 3], upper: [width, 0.6 * height, d], material: host, averaging: true });
+    model.objects.push(Object::Box {
+        lower: [0.0; 3],
+        upper: [width, 0.6 * height, d],
+        material: host,
+        averaging: true,
+    });
     for k in 0..(nx * ny / 1250) {
         let (x, y) = ((k as f64 * 0.618_034).fract() * width, (k as f64 * 0.754_878).fract() * 0.6 * height);
         let (start, end) = ([x, y, 0.0], [x, y, d]);
@@ -26,7 +31,12 @@ fn bed(nx: usize, ny: usize, steps: usize, host: Material, stone: Material) -> M
     model.waveforms.push(Waveform { id: "w".into(), kind: WaveformKind::Ricker, amplitude: 1.0, frequency: 1e9 });
     let position = [0.5 * width, 0.8 * height, 0.0];
     let excitation = Excitation { start: 0.0, stop: None };
-    model.sources.push(Source::HertzianDipole(HertzianDipole { polarisation: Axis::Z, position, waveform: 0, excitation }));
+    model.sources.push(Source::HertzianDipole(HertzianDipole {
+        polarisation: Axis::Z,
+        position,
+        waveform: 0,
+        excitation,
+    }));
     model.receivers.push(Receiver { position: [0.55 * width, 0.8 * height, 0.0], name: None });
     model
 }

@@ -20,7 +20,10 @@ pub fn gprmax() -> Option<Interpreter> {
         Err(error) if std::env::var("CI").is_ok_and(|value| value == "true") => panic!("gprMax is needed: {error}"),
         Err(error) => {
             // The test runner keeps what `eprintln!` says to itself when a test passes; this has to be seen.
-            let _ = writeln!(std::io::stderr(), "\nSKIPPED: this test needs gprMax, which could not be installed: {error}\n");
+            let _ = writeln!(
+                std::io::stderr(),
+                "\nSKIPPED: this test needs gprMax, which could not be installed: {error}\n"
+            );
             None
         }
     }

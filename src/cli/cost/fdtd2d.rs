@@ -22,7 +22,9 @@ const COARSEST: f64 = 0.008;
 /// Measures and shows the curve.
 pub(super) fn run(args: &CostArgs) -> Result<(), CliError> {
     let mut cells = vec![Metres(COARSEST)];
-    while let Some(last) = cells.last().map(|cell| cell.si()).filter(|cell| cell / 2.0 >= args.finest.si() * (1.0 - 1e-9)) {
+    while let Some(last) =
+        cells.last().map(|cell| cell.si()).filter(|cell| cell / 2.0 >= args.finest.si() * (1.0 - 1e-9))
+    {
         cells.push(Metres(last / 2.0));
     }
     let (single, double) = (Fdtd::default(), Fdtd { precision: Precision::Double, ..Fdtd::default() });
@@ -120,7 +122,9 @@ fn figure(table: &CostTable) -> Chart {
         Axis::log10("error of the echoes", "%"),
     );
     for (index, (kind, name)) in
-        [(Smoothing::None, "staircase"), (Smoothing::Edges, "edge means"), (Smoothing::Area, "area means")].into_iter().enumerate()
+        [(Smoothing::None, "staircase"), (Smoothing::Edges, "edge means"), (Smoothing::Area, "area means")]
+            .into_iter()
+            .enumerate()
     {
         for (double, style) in [(false, Stroke::LineAndPoints), (true, Stroke::Points)] {
             let points: Vec<(f64, f64)> = table

@@ -86,7 +86,13 @@ fn measure(stones: usize) -> Result<Point, CliError> {
         let rows = outcome.after.grading_table(&input.grading);
         let grading = rows.iter().map(|row| 100.0 * row.deviation().si().abs()).fold(0.0, f64::max);
         let solid = 100.0 * (outcome.before.solid_share().si() - wanted).abs();
-        runs.push((outcome.seconds_positioning.si(), outcome.seconds_compaction.si(), grading, solid, outcome.after.count()));
+        runs.push((
+            outcome.seconds_positioning.si(),
+            outcome.seconds_compaction.si(),
+            grading,
+            solid,
+            outcome.after.count(),
+        ));
     }
     let median = |of: &dyn Fn(&(f64, f64, f64, f64, usize)) -> f64| {
         let mut values: Vec<f64> = runs.iter().map(of).collect();
@@ -105,7 +111,8 @@ fn measure(stones: usize) -> Result<Point, CliError> {
 
 fn figure(points: &[Point], exponent: Option<f64>) -> Chart {
     let title = exponent.map_or("Packing".into(), |exponent| format!("Packing: time grows as N^{exponent:.2}"));
-    let curve = |of: &dyn Fn(&Point) -> f64| points.iter().map(|point| (point.stones as f64, of(point))).collect::<Vec<_>>();
+    let curve =
+        |of: &dyn Fn(&Point) -> f64| points.iter().map(|point| (point.stones as f64, of(point))).collect::<Vec<_>>();
     let first = points.first().map_or(1.0, |point| point.positioning_seconds / point.stones as f64);
     Chart::new(&title, Axis::log10("stones", ""), Axis::log10("time", "s"))
         .with(Series::line("positioning", curve(&|point| point.positioning_seconds)).drawn(Stroke::LineAndPoints, 0))

@@ -47,9 +47,10 @@ pub fn validate(args: &ValidateArgs) -> Result<CaseReport, CliError> {
         found.push(agree(&name, &model, &theirs)?);
     }
     if args.tier == Tier::Full {
-        for (name, fouling, geometry) in
-            [("clean tank", None, GeometryKind::Voxels), ("tank, 20 cm of fouling", Some("20cm"), GeometryKind::Cylinders)]
-        {
+        for (name, fouling, geometry) in [
+            ("clean tank", None, GeometryKind::Voxels),
+            ("tank, 20 cm of fouling", Some("20cm"), GeometryKind::Cylinders),
+        ] {
             let mut spec = SceneSpec::preset("tank")?;
             spec.fouling = fouling.map(|amount| amount.parse().map(FoulingSpec::of)).transpose()?;
             spec.grid.geometry = geometry;
@@ -72,11 +73,16 @@ fn cases(folder: &Path) -> Result<Vec<PathBuf>, CliError> {
             folder.display()
         ))
     })?;
-    let mut folders: Vec<PathBuf> =
-        entries.filter_map(|entry| Some(entry.ok()?.path())).filter(|path| path.join("scene.in").is_file() && path.join("out_f64.h5").is_file()).collect();
+    let mut folders: Vec<PathBuf> = entries
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|path| path.join("scene.in").is_file() && path.join("out_f64.h5").is_file())
+        .collect();
     folders.sort();
     if folders.is_empty() {
-        return Err(CliError::input(format!("the folder `{}` holds no case (scene.in with out_f64.h5)", folder.display())));
+        return Err(CliError::input(format!(
+            "the folder `{}` holds no case (scene.in with out_f64.h5)",
+            folder.display()
+        )));
     }
     Ok(folders)
 }

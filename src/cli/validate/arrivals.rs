@@ -41,9 +41,10 @@ pub fn validate(out: Option<&Path>) -> Result<CaseReport, CliError> {
             let points = echoes.times().zip(&echoes.samples).map(|(t, v)| (1e9 * t, v / peak)).collect();
             Series::line(name, points).drawn(style, colour)
         };
-        let mut chart = Chart::new("Homogenised tank", Axis::linear("time", "ns"), Axis::linear("echo / plate echo", ""))
-            .with(line(&clean_trace, "clean", Stroke::Solid, 0))
-            .with(line(&fouled_trace, "20 cm of fouling", Stroke::Dashed, 1));
+        let mut chart =
+            Chart::new("Homogenised tank", Axis::linear("time", "ns"), Axis::linear("echo / plate echo", ""))
+                .with(line(&clean_trace, "clean", Stroke::Solid, 0))
+                .with(line(&fouled_trace, "20 cm of fouling", Stroke::Dashed, 1));
         let zero = nanoseconds(reference.waveform_zero());
         for (label, scene) in [("plate, clean", &clean), ("plate, fouled", &fouled)] {
             chart.lines.push(ReferenceLine::vertical(zero + nanoseconds(scene.arrivals.plate), label));

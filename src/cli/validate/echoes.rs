@@ -35,7 +35,12 @@ pub fn validate(out: Option<&Path>) -> Result<CaseReport, CliError> {
     let reference = plate_reference(&solver, &resolve(&spec)?, &on_progress)?;
     let bar = Bar::new("packings");
     let mut ensembles = Vec::new();
-    let variants = [(false, EquivalentStone::True), (true, EquivalentStone::True), (false, EquivalentStone::Equivalent2d), (true, EquivalentStone::Equivalent2d)];
+    let variants = [
+        (false, EquivalentStone::True),
+        (true, EquivalentStone::True),
+        (false, EquivalentStone::Equivalent2d),
+        (true, EquivalentStone::Equivalent2d),
+    ];
     for (number, (fouled, stone)) in variants.into_iter().enumerate() {
         let mut spec = spec.clone();
         spec.fouling = fouled.then(|| "20cm".parse().map(FoulingSpec::of)).transpose()?;
@@ -43,8 +48,13 @@ pub fn validate(out: Option<&Path>) -> Result<CaseReport, CliError> {
         spec.packing.judged_by = JudgedBy::EnvelopePeak;
         let what = if fouled { "20 cm of fouling" } else { "clean" };
         let how = if stone == EquivalentStone::True { "true stone" } else { "equivalent stone" };
-        let mut ensemble =
-            Ensemble { name: format!("{what}, {how}"), scene: resolve(&spec)?, traces: vec![], echoes: vec![], missed: 0 };
+        let mut ensemble = Ensemble {
+            name: format!("{what}, {how}"),
+            scene: resolve(&spec)?,
+            traces: vec![],
+            echoes: vec![],
+            missed: 0,
+        };
         for seed in 1..=SEEDS {
             let scene = resolve(&SceneSpec { seed, ..spec.clone() })?;
             match simulate_echoes(&solver, &scene, &reference, &on_progress) {
@@ -72,10 +82,20 @@ fn spread(ensemble: &Ensemble, of: impl Fn(&Echoes) -> f64) -> Option<MeanAndSpr
 }
 
 fn report(ensembles: &[Ensemble]) -> Result<CaseReport, CliError> {
-    let title = format!("tank-echoes: echoes of packings from the emission, ns, mean ± standard deviation of {SEEDS} seeds");
+    let title =
+        format!("tank-echoes: echoes of packings from the emission, ns, mean ± standard deviation of {SEEDS} seeds");
     let mut table = Report::new(
         title.clone(),
-        ["bed", "surface, layers", "surface, waveform", "plate, layers", "plate, waveform", "plate, envelope", "envelope late by", "found"],
+        [
+            "bed",
+            "surface, layers",
+            "surface, waveform",
+            "plate, layers",
+            "plate, waveform",
+            "plate, envelope",
+            "envelope late by",
+            "found",
+        ],
     );
     let mut json = Vec::new();
     for ensemble in ensembles {
@@ -83,8 +103,10 @@ fn report(ensembles: &[Ensemble]) -> Result<CaseReport, CliError> {
             found.as_ref().map_or("–".into(), |s| format!("{:.3} ± {:.3}", s.mean, s.standard_deviation))
         };
         let surface = spread(ensemble, |e| e.surface.waveform.si());
-        let (waveform, envelope) = (spread(ensemble, |e| e.plate.waveform.si()), spread(ensemble, |e| e.plate.envelope.si()));
-        let (exact_surface, exact) = (1e9 * ensemble.scene.arrivals.surface.si(), 1e9 * ensemble.scene.arrivals.plate.si());
+        let (waveform, envelope) =
+            (spread(ensemble, |e| e.plate.waveform.si()), spread(ensemble, |e| e.plate.envelope.si()));
+        let (exact_surface, exact) =
+            (1e9 * ensemble.scene.arrivals.surface.si(), 1e9 * ensemble.scene.arrivals.plate.si());
         let late = envelope.as_ref().map_or("–".into(), |found| format!("{:+.3}", found.mean - exact));
         table.row([
             ensemble.name.clone(),
@@ -114,12 +136,18 @@ fn figure(ensembles: &[Ensemble], reference: &PlateReference) -> Panels {
         );
         for (index, ensemble) in ensembles[first..first + 2].iter().enumerate() {
             let zero = reference.zero().si();
-            let echoes: Vec<AScan> =
-                ensemble.traces.iter().map(|trace| compare::subtract_reference(trace, &reference.free_space).0).collect();
+            let echoes: Vec<AScan> = ensemble
+                .traces
+                .iter()
+                .map(|trace| compare::subtract_reference(trace, &reference.free_space).0)
+                .collect();
             let peak = reference.plate_echo.peak();
-            let times: Vec<f64> = echoes.first().map_or(vec![], |trace| trace.times().map(|t| 1e9 * (t - zero)).collect());
+            let times: Vec<f64> =
+                echoes.first().map_or(vec![], |trace| trace.times().map(|t| 1e9 * (t - zero)).collect());
             let bands: Vec<MeanAndSpread> = (0..times.len())
-                .filter_map(|k| MeanAndSpread::of(&echoes.iter().map(|trace| trace.samples[k] / peak).collect::<Vec<_>>()))
+                .filter_map(|k| {
+                    MeanAndSpread::of(&echoes.iter().map(|trace| trace.samples[k] / peak).collect::<Vec<_>>())
+                })
                 .collect();
             let style = if index == 0 { Stroke::Solid } else { Stroke::Dashed };
             let name = if index == 0 { "clean" } else { "20 cm of fouling" };
@@ -130,7 +158,10 @@ fn figure(ensembles: &[Ensemble], reference: &PlateReference) -> Panels {
                 upper: bands.iter().map(|b| b.mean + b.standard_deviation).collect(),
                 colour: index,
             });
-            chart.series.push(Series::line(name, times.iter().copied().zip(bands.iter().map(|b| b.mean)).collect()).drawn(style, index));
+            chart.series.push(
+                Series::line(name, times.iter().copied().zip(bands.iter().map(|b| b.mean)).collect())
+                    .drawn(style, index),
+            );
             let label = format!("plate, {name}, layers");
             chart.lines.push(ReferenceLine::vertical(1e9 * ensemble.scene.arrivals.plate.si(), &label));
         }
