@@ -77,6 +77,15 @@ pub(super) fn run(args: &CostArgs) -> Result<(), CliError> {
     Ok(())
 }
 
+/// What one packing came to.
+struct Run {
+    positioning: f64,
+    compaction: f64,
+    grading: f64,
+    solid: f64,
+    stones: usize,
+}
+
 fn measure(stones: usize) -> Result<Point, CliError> {
     let input = RsaInput { width: Metres(stones as f64 / PER_METRE), ..RsaInput::benedetto2018()? };
     let wanted = input.start()?.solid_share.si();
@@ -84,28 +93,26 @@ fn measure(stones: usize) -> Result<Point, CliError> {
     for seed in 1..=REPEATS {
         let outcome = packing::pack(&input, seed)?;
         let rows = outcome.after.grading_table(&input.grading);
-        let grading = rows.iter().map(|row| 100.0 * row.deviation().si().abs()).fold(0.0, f64::max);
-        let solid = 100.0 * (outcome.before.solid_share().si() - wanted).abs();
-        runs.push((
-            outcome.seconds_positioning.si(),
-            outcome.seconds_compaction.si(),
-            grading,
-            solid,
-            outcome.after.count(),
-        ));
+        runs.push(Run {
+            positioning: outcome.seconds_positioning.si(),
+            compaction: outcome.seconds_compaction.si(),
+            grading: rows.iter().map(|row| 100.0 * row.deviation().si().abs()).fold(0.0, f64::max),
+            solid: 100.0 * (outcome.before.solid_share().si() - wanted).abs(),
+            stones: outcome.after.count(),
+        });
     }
-    let median = |of: &dyn Fn(&(f64, f64, f64, f64, usize)) -> f64| {
+    let median = |of: &dyn Fn(&Run) -> f64| {
         let mut values: Vec<f64> = runs.iter().map(of).collect();
         values.sort_by(f64::total_cmp);
         values[values.len() / 2]
     };
-    let mean = |of: &dyn Fn(&(f64, f64, f64, f64, usize)) -> f64| runs.iter().map(of).sum::<f64>() / runs.len() as f64;
+    let mean = |of: &dyn Fn(&Run) -> f64| runs.iter().map(of).sum::<f64>() / runs.len() as f64;
     Ok(Point {
-        stones: runs[0].4,
-        positioning_seconds: median(&|run| run.0),
-        compaction_seconds: median(&|run| run.1),
-        grading_error_percent: mean(&|run| run.2),
-        solid_error_percent: mean(&|run| run.3),
+        stones: runs[0].stones,
+        positioning_seconds: median(&|run| run.positioning),
+        compaction_seconds: median(&|run| run.compaction),
+        grading_error_percent: mean(&|run| run.grading),
+        solid_error_percent: mean(&|run| run.solid),
     })
 }
 
