@@ -10,6 +10,8 @@ use super::setup::Setup;
 pub struct Dispersion<T> {
     /// Sorted by row.
     spans: Vec<Span>,
+    /// First run of each stored row, and one entry more.
+    of_row: Vec<usize>,
     memory: Vec<T>,
     /// E of a row before its step.
     ez_old: Vec<T>,
@@ -18,7 +20,6 @@ pub struct Dispersion<T> {
 
 /// A run of nodes of one dispersive material.
 struct Span {
-    row: usize,
     j: usize,
     count: usize,
     material: usize,
@@ -35,61 +36,79 @@ enum Poles<T> {
 }
 
 impl<T: Real> Dispersion<T> {
-    /// Finds the runs of dispersive nodes; `None` where there are none.
-    pub fn new(setup: &Setup<'_>, first: usize, rows: usize) -> Option<Self> {
+    /// Finds the runs of dispersive nodes in stored rows, which begin at row `base` of the grid; `None` where there are
+    /// none.
+    pub fn new(setup: &Setup<'_>, base: usize, stored: usize) -> Option<Self> {
         let materials: Vec<(u32, Poles<T>)> =
             setup.edges.iter().enumerate().filter_map(|(entry, edge)| Some((entry as u32, Poles::of(edge)?))).collect();
-        let ny = setup.painted.cells_xy[1];
-        let (mut spans, mut place): (Vec<Span>, usize) = (vec![], 0);
-        for row in 1..=rows {
-            let entries = &setup.painted.edge_z[(first - 1 + row) * (ny + 1)..][..ny];
+        let [nx, ny] = setup.painted.cells_xy;
+        let (mut spans, mut of_row, mut place): (Vec<Span>, Vec<usize>, usize) = (vec![], vec![0], 0);
+        for row in base..base + stored {
+            let inside = if row > 0 && row < nx { 1..ny } else { 1..1 };
             let mut j = 1;
-            for run in entries[1..].chunk_by(|a, b| a == b) {
+            for run in setup.painted.edge_z[row * (ny + 1)..][inside].chunk_by(|a, b| a == b) {
                 if let Some(material) = materials.iter().position(|(entry, _)| *entry == run[0]) {
-                    spans.push(Span { row, j, count: run.len(), material, place });
+                    spans.push(Span { j, count: run.len(), material, place });
                     place += run.len() * materials[material].1.count();
                 }
                 j += run.len();
             }
+            of_row.push(spans.len());
         }
         let materials = materials.into_iter().map(|(_, poles)| poles).collect();
         let ez_old = vec![T::default(); padded_width(ny)];
-        (!spans.is_empty()).then(|| Self { spans, memory: vec![T::default(); place], ez_old, materials })
+        (!spans.is_empty()).then(|| Self { spans, of_row, memory: vec![T::default(); place], ez_old, materials })
     }
 
-    /// Keeps E of a row's dispersive nodes before its step; `ez` begins at node 1, `next` is the first run not yet done.
+    /// Keeps E of a row's dispersive nodes before its step; `ez` begins at node `j`.
     #[inline(always)]
-    pub fn keep(&mut self, r: usize, ez: &[T], next: usize) {
-        for span in self.spans[next..].iter().take_while(|span| span.row == r) {
-            let nodes = span.j - 1..span.j - 1 + span.count;
-            self.ez_old[nodes.clone()].copy_from_slice(&ez[nodes]);
+    pub fn keep(&mut self, row: usize, j: usize, ez: &[T]) {
+        for span in &self.spans[self.of_row[row]..self.of_row[row + 1]] {
+            if let Some((begin, count)) = overlap(span.j, span.count, j, ez.len()) {
+                self.ez_old[begin - 1..][..count].copy_from_slice(&ez[begin - j..][..count]);
+            }
         }
     }
 
-    /// Relaxes the dispersive nodes of a row; `ez` begins at node 1.
+    /// Relaxes the dispersive nodes of a row; `ez` begins at node `j`.
     #[inline(always)]
-    pub fn relax_row(&mut self, r: usize, ez: &mut [T], next: &mut usize) {
-        while let Some(span) = self.spans.get(*next).filter(|span| span.row == r) {
-            let nodes = span.j - 1..span.j - 1 + span.count;
-            let (ez, ez_old) = (&mut ez[nodes.clone()], &self.ez_old[nodes]);
+    pub fn relax_row(&mut self, row: usize, j: usize, ez: &mut [T]) {
+        for span in &self.spans[self.of_row[row]..self.of_row[row + 1]] {
+            let Some((begin, count)) = overlap(span.j, span.count, j, ez.len()) else { continue };
+            let (ez, ez_old) = (&mut ez[begin - j..][..count], &self.ez_old[begin - 1..][..count]);
             let memory = &mut self.memory[span.place..];
+            let inside = begin - span.j..begin - span.j + count;
             match &self.materials[span.material] {
                 Poles::One(c) => {
-                    kernel::relax(ez, ez_old, [&mut memory[..span.count]], c);
+                    kernel::relax(ez, ez_old, [&mut memory[inside]], c);
                 }
                 Poles::Two(c) => {
                     let (first, rest) = memory.split_at_mut(span.count);
-                    kernel::relax(ez, ez_old, [first, &mut rest[..span.count]], c);
+                    kernel::relax(ez, ez_old, [&mut first[inside.clone()], &mut rest[inside]], c);
                 }
                 Poles::Three(c) => {
                     let (first, rest) = memory.split_at_mut(span.count);
                     let (second, rest) = rest.split_at_mut(span.count);
-                    kernel::relax(ez, ez_old, [first, second, &mut rest[..span.count]], c);
+                    let third = &mut rest[inside.clone()];
+                    kernel::relax(ez, ez_old, [&mut first[inside.clone()], &mut second[inside], third], c);
                 }
             }
-            *next += 1;
         }
     }
+
+    /// The memory of a stored row.
+    pub fn memory_of_row(&mut self, row: usize) -> &mut [T] {
+        let place = |span: usize| self.spans.get(span).map_or(self.memory.len(), |span| span.place);
+        let (begin, end) = (place(self.of_row[row]), place(self.of_row[row + 1]));
+        &mut self.memory[begin..end]
+    }
+}
+
+/// First node and number of nodes that two runs share.
+#[inline(always)]
+pub fn overlap(a: usize, a_count: usize, b: usize, b_count: usize) -> Option<(usize, usize)> {
+    let (begin, end) = (a.max(b), (a + a_count).min(b + b_count));
+    (begin < end).then(|| (begin, end - begin))
 }
 
 impl<T: Real> Poles<T> {

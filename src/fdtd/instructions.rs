@@ -5,6 +5,7 @@
 
 use super::FdtdError;
 use super::block::Block;
+use super::reach::Cones;
 use super::real::Real;
 
 /// Vector instructions.
@@ -67,28 +68,28 @@ impl Sweep {
         self.0
     }
 
-    /// Steps a block.
-    pub fn run<T: Real>(self, block: &mut Block<T>, step: usize) {
+    /// Makes the steps `first..first + count` of a block.
+    pub fn run<T: Real>(self, block: &mut Block<T>, cones: &Cones, first: usize, count: usize) {
         match self.0 {
             // SAFETY: a `Sweep` of this set exists only where the machine was found to have these instructions.
             #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx512 => unsafe { sweep_avx512(block, step) },
+            InstructionSet::Avx512 => unsafe { sweep_avx512(block, cones, first, count) },
             // SAFETY: as above.
             #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx2 => unsafe { sweep_avx2(block, step) },
-            _ => block.sweep(step),
+            InstructionSet::Avx2 => unsafe { sweep_avx2(block, cones, first, count) },
+            _ => block.pass(cones, first, count),
         }
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn sweep_avx2<T: Real>(block: &mut Block<T>, step: usize) {
-    block.sweep(step);
+fn sweep_avx2<T: Real>(block: &mut Block<T>, cones: &Cones, first: usize, count: usize) {
+    block.pass(cones, first, count);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512vl")]
-fn sweep_avx512<T: Real>(block: &mut Block<T>, step: usize) {
-    block.sweep(step);
+fn sweep_avx512<T: Real>(block: &mut Block<T>, cones: &Cones, first: usize, count: usize) {
+    block.pass(cones, first, count);
 }

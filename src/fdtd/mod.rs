@@ -1,8 +1,8 @@
 //! The embedded finite-difference time-domain solver: two-dimensional (TMz, invariant along z), gprMax's numerics.
 //!
 //! [`Fdtd`] fulfils [`Forward`](crate::forward::Forward). A model is painted, turned into coefficients (`setup`), cut
-//! into blocks of rows, one per thread (`block`), and stepped (`team`); the loops over a row are in `kernel`. An effect
-//! that a model does not call for has no array: without conductivity there is no `ca`, the absorbing boundary has memory
+//! into blocks of rows, one per thread (`block`), and stepped (`team`), several steps per pass over the rows; the loops over
+//! a row are in `kernel`. Nodes where no wave is that a receiver will see are not stepped (`reach`). An effect that a model does not call for has no array: without conductivity there is no `ca`, the absorbing boundary has memory
 //! in its slabs only, and Debye relaxation on dispersive nodes only.
 //!
 //! Numbers below 1e-38 (single precision) are computed as IEEE 754 has them, never flushed to zero, so that the bits are the
@@ -17,6 +17,7 @@ mod instructions;
 mod kernel;
 mod layout;
 mod predict;
+mod reach;
 mod real;
 mod setup;
 mod solver;
@@ -25,4 +26,5 @@ mod team;
 pub use error::FdtdError;
 pub use instructions::InstructionSet;
 pub use predict::{Prediction, predict};
-pub use solver::{Fdtd, Precision, Stats};
+pub use reach::{Reach, reach};
+pub use solver::{Fdtd, Precision, Stats, Stepping};

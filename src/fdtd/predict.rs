@@ -6,8 +6,9 @@ use std::ops::ControlFlow;
 use super::FdtdError;
 use super::coefficients::Edge;
 use super::layout::{Rows, padded_width};
+use super::reach::Cones;
 use super::setup::Setup;
-use super::solver::{Fdtd, Precision};
+use super::solver::{Fdtd, Precision, Stepping};
 use crate::model::{DebyePole, Grid, Material, Model, Object, Painted, TimeWindow, paint};
 
 /// What a run will cost.
@@ -17,16 +18,21 @@ pub struct Prediction {
     pub bytes: u64,
     /// Wall time of the loop over the steps, s.
     pub seconds: f64,
-    /// Cells times steps.
+    /// Cells times steps, those left out included.
     pub cell_steps: u64,
+    /// Share of them that is left out, because no wave is there that a receiver will see.
+    pub share_saved: f64,
 }
 
-/// Cells of the trial runs: more than the outer cache holds, so that a larger model runs at the same speed.
-const TRIAL_CELLS: usize = 2_000_000;
+/// Cells of the trial runs: more than the inner caches hold, so that a larger model runs at the same speed.
+const TRIAL_CELLS: usize = 250_000;
 /// Cell-steps of the shorter trial run: one or two milliseconds.
-const TRIAL_CELL_STEPS: usize = 4_000_000;
+const TRIAL_CELL_STEPS: usize = 2_400_000;
+/// Runs of each length, of which the fastest counts.
+const TRIALS: usize = 3;
 
-/// Predicts memory and wall time in single precision, from trial runs of some ten milliseconds in all on this machine.
+/// Predicts memory and wall time in single precision, from trial runs of some twenty milliseconds in all on this machine;
+/// twice that for a model with Debye media.
 ///
 /// The trials have rows as long as the model's, the same coefficients and the same threads; the time of the dispersive
 /// nodes is the difference of two of them.
@@ -46,7 +52,9 @@ pub fn predict(model: &Model, painted: &Painted, threads: Option<NonZeroUsize>) 
         per_step += extra * nodes as f64;
     }
     let steps = setup.iterations;
-    Ok(Prediction { bytes, seconds: per_step * steps as f64, cell_steps: cells as u64 * steps as u64 })
+    let share_saved = Cones::new(&setup, true).reach().share_saved;
+    let seconds = per_step * steps as f64 * (1.0 - share_saved);
+    Ok(Prediction { bytes, seconds, cell_steps: cells as u64 * steps as u64, share_saved })
 }
 
 /// Seconds per cell and step of an even material on a grid with the model's rows.
@@ -67,18 +75,23 @@ fn trial(fdtd: &Fdtd, model: &Model, lossy: bool, poles: usize) -> Result<f64, F
     let id = even.add_material(material);
     even.objects.push(Object::Box { lower: [0.0; 3], upper: [f64::MAX; 3], material: id, averaging: true });
     let painted = paint(&even)?;
-    let mut fastest = |steps: usize| {
+    let mut seconds = |steps: usize| {
         // One sample more than steps: the last sample is taken after the last step.
         even.time_window = TimeWindow::Iterations(steps + 1);
-        let run =
-            |_| fdtd.solve_painted(&even, &painted, &|_| ControlFlow::Continue(())).map(|(_, stats)| stats.wall.si());
-        (0..3).map(run).try_fold(f64::INFINITY, |fastest, seconds| Ok::<_, FdtdError>(seconds?.min(fastest)))
+        let stepping = Stepping { skip: false, ..Stepping::default() };
+        let solved = fdtd.solve_stepping(&even, &painted, stepping, &|_| ControlFlow::Continue(()));
+        solved.map(|(_, stats)| stats.wall.si())
     };
-    // The difference leaves out what a run pays once: starting threads and touching memory for the first time.
-    let steps = (TRIAL_CELL_STEPS / (nx * ny)).clamp(2, 500);
-    let (short, long) = (fastest(steps)?, fastest(4 * steps)?);
-    let marginal = (long - short) / (3 * steps) as f64;
-    let whole = long / (4 * steps) as f64;
+    // The difference leaves out what a run pays once: starting threads and touching memory for the first time. Short and
+    // long runs take turns, so that both meet the same load.
+    let steps = (TRIAL_CELL_STEPS / (nx * ny)).clamp(16, 512) / 16 * 16;
+    let (mut short, mut long) = (f64::INFINITY, f64::INFINITY);
+    for _ in 0..TRIALS {
+        short = short.min(seconds(steps)?);
+        long = long.min(seconds(3 * steps)?);
+    }
+    let marginal = (long - short) / (2 * steps) as f64;
+    let whole = long / (3 * steps) as f64;
     Ok(if marginal > 0.2 * whole { marginal } else { whole } / (nx * ny) as f64)
 }
 

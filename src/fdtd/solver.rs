@@ -6,6 +6,7 @@ use super::FdtdError;
 use super::block::{Block, Probe};
 use super::instructions::InstructionSet;
 use super::predict::{bytes_needed, painting_bytes};
+use super::reach::Cones;
 use super::real::Real;
 use super::setup::{Setup, check_model};
 use super::team;
@@ -56,12 +57,27 @@ pub struct Fdtd {
     pub instruction_set: InstructionSet,
 }
 
+/// In which order a run makes its steps, and which it leaves out; the traces have the same bits in any case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Stepping {
+    /// Steps that a row takes while it is in the cache; `None`: by the length of the rows.
+    pub steps_per_pass: Option<NonZeroUsize>,
+    /// Leaves out what no wave has reached or no receiver will see ([`reach`](super::reach())).
+    pub skip: bool,
+}
+
+impl Default for Stepping {
+    fn default() -> Self {
+        Self { steps_per_pass: None, skip: true }
+    }
+}
+
 /// What a run cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stats {
     /// Wall time of the loop over the steps.
     pub wall: Seconds,
-    /// Cells times steps.
+    /// Cells times steps, those left out included.
     pub cell_steps: u64,
     /// Memory of the fields and coefficients, bytes.
     pub bytes: u64,
@@ -113,12 +129,26 @@ impl Fdtd {
         painted: &Painted,
         on_progress: OnProgress<'_>,
     ) -> Result<(Traces, Stats), FdtdError> {
+        self.solve_stepping(model, painted, Stepping::default(), on_progress)
+    }
+
+    /// Runs a painted model with an order of steps of the caller's choice, for measurements and tests.
+    ///
+    /// # Errors
+    /// See [`FdtdError`].
+    pub fn solve_stepping(
+        &self,
+        model: &Model,
+        painted: &Painted,
+        stepping: Stepping,
+        on_progress: OnProgress<'_>,
+    ) -> Result<(Traces, Stats), FdtdError> {
         let setup = Setup::new(model, painted)?;
         let bytes = bytes_needed(&setup, self.precision);
         check_memory(bytes, available_memory())?;
         let (probes, mut stats) = match self.precision {
-            Precision::Single => self.run::<f32>(model, &setup, on_progress)?,
-            Precision::Double => self.run::<f64>(model, &setup, on_progress)?,
+            Precision::Single => self.run::<f32>(model, &setup, stepping, on_progress)?,
+            Precision::Double => self.run::<f64>(model, &setup, stepping, on_progress)?,
         };
         stats.bytes = bytes;
         Ok((self.traces(model, &setup, probes), stats))
@@ -135,12 +165,18 @@ impl Fdtd {
         &self,
         model: &Model,
         setup: &Setup<'_>,
+        stepping: Stepping,
         on_progress: OnProgress<'_>,
     ) -> Result<(Vec<Probe>, Stats), FdtdError> {
         let sweep = self.instruction_set.resolve()?;
         let threads = self.threads_for(model);
-        let blocks: Vec<Block<T>> = team::blocks(setup, threads);
-        let (probes, wall) = team::run(blocks, setup, sweep, on_progress)?;
+        let cones = Cones::new(setup, stepping.skip);
+        let automatic = || team::steps_per_pass::<T>(setup, threads);
+        let most = model.grid.cells[0] - 1;
+        let depth = stepping.steps_per_pass.map_or_else(automatic, |asked| asked.get().min(most));
+        let blocks: Vec<Block<T>> = team::blocks(setup, &cones, threads, depth);
+        let threads = blocks.len();
+        let (probes, wall) = team::run(blocks, setup, &cones, depth, sweep, on_progress)?;
         let cell_steps = model.grid.cell_count() as u64 * setup.iterations as u64;
         let wall = Seconds(wall.as_secs_f64());
         Ok((probes, Stats { wall, cell_steps, bytes: 0, threads, instruction_set: sweep.set() }))

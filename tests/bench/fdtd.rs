@@ -1,11 +1,12 @@
 //! Speed of the embedded solver, in 10⁶ cells times steps per second of the loop: best of several short runs.
 //!
-//! `cargo bench --bench fdtd` prints the table; `-- small` only its first rows.
+//! `cargo bench --bench fdtd` prints the table; `-- small` only its first rows. Every step of every cell is
+//! made (`skip: false`); one step per pass is how a solver without time tiling goes over the grid.
 
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 
-use ballast_gpr::fdtd::{Fdtd, InstructionSet, Precision};
+use ballast_gpr::fdtd::{Fdtd, InstructionSet, Precision, Stepping, predict};
 use ballast_gpr::model::{
     Axis, DebyePole, Excitation, Grid, HertzianDipole, Material, Model, Object, Painted, Receiver, Source, TimeWindow,
     Waveform, WaveformKind, paint,
@@ -41,12 +42,39 @@ fn bed(nx: usize, ny: usize, steps: usize, host: Material, stone: Material) -> M
     model
 }
 
-fn best(fdtd: Fdtd, model: &Model, painted: &Painted, runs: usize) -> f64 {
-    let speed = |_| {
-        let run = fdtd.solve_painted(model, painted, &|_| ControlFlow::Continue(()));
-        run.map_or(f64::NAN, |(_, stats)| stats.cell_steps_per_second() / 1e6)
+/// Speed of the loop, and of the processor alone where one thread does all (`None` elsewhere than Linux).
+#[derive(Clone, Copy, Default)]
+struct Speed {
+    wall: f64,
+    processor: f64,
+}
+
+/// Nanoseconds that this thread has run.
+fn processor_time() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    text.split(' ').next()?.parse().ok()
+}
+
+/// Best of several runs of each order of steps, taken in turn, so that all meet the same load.
+fn speeds(model: &Model, painted: &Painted, fdtd: Fdtd, orders: &[Stepping], runs: usize) -> Vec<Speed> {
+    let mut short = model.clone();
+    short.time_window = TimeWindow::Iterations(1);
+    let run = |model: &Model, stepping| {
+        let before = processor_time();
+        let run = fdtd.solve_stepping(model, painted, stepping, &|_| ControlFlow::Continue(()));
+        let spent = processor_time().zip(before).map_or(f64::NAN, |(after, before)| after - before);
+        run.map_or((f64::NAN, f64::NAN), |(_, stats)| (stats.cell_steps_per_second() / 1e6, spent))
     };
-    (0..runs).map(speed).fold(0.0, f64::max)
+    let cell_steps = (model.grid.cell_count() * (model.iterations() - 1)) as f64;
+    let mut best = vec![Speed::default(); orders.len()];
+    for _ in 0..runs {
+        for (best, &order) in best.iter_mut().zip(orders) {
+            let ((_, idle), (wall, spent)) = (run(&short, order), run(model, order));
+            best.wall = best.wall.max(wall);
+            best.processor = best.processor.max(cell_steps / (spent - idle) * 1e3);
+        }
+    }
+    best
 }
 
 fn main() {
@@ -57,28 +85,52 @@ fn main() {
     wet.poles.push(DebyePole { delta_eps: 6.0, tau: 9.231e-12 });
     wet.averagable = false;
     let hosts = [
-        ("lossless", Material::dielectric("host", 1.0, 0.0)),
-        ("lossy", Material::dielectric("host", 4.0, 0.005)),
-        ("Debye", wet),
+        ("lossless", Material::dielectric("host", 1.0, 0.0), Precision::Single),
+        ("lossy", Material::dielectric("host", 4.0, 0.005), Precision::Single),
+        ("Debye", wet, Precision::Single),
+        ("lossless", Material::dielectric("host", 1.0, 0.0), Precision::Double),
     ];
-    println!("{:<12}{:<10}{:<8}{:<9}{:>9}{:>10}", "cells", "host", "number", "set", "1 thread", "2 threads");
+    let depths = [1, 2, 4, 8, 16];
+    let orders = depths.map(|depth| Stepping { steps_per_pass: NonZeroUsize::new(depth), skip: false });
+    println!("steps per pass; w: wall time, p: processor time (one thread)");
+    println!(
+        "{:<11}{:<10}{:<8}{:<9}{:<4}{}",
+        "cells",
+        "host",
+        "number",
+        "set",
+        "",
+        depths.map(|d| format!("{d:>8}")).concat()
+    );
     for &(nx, ny) in sizes {
-        for (name, host) in &hosts {
-            let steps = 100_000_000 / (nx * ny);
+        for (name, host, precision) in &hosts {
+            let steps = (200_000_000 / (nx * ny)).max(48) / 16 * 16 + 1;
             let model = bed(nx, ny, steps, host.clone(), Material::dielectric("stone", 6.0, 0.0));
             let Ok(painted) = paint(&model) else { continue };
-            for precision in [Precision::Single, Precision::Double] {
-                for set in [InstructionSet::Avx512, InstructionSet::Avx2, InstructionSet::Scalar] {
-                    if set == InstructionSet::Scalar && (nx > 750 || precision == Precision::Double) {
-                        continue;
-                    }
-                    let run = |threads: usize| {
-                        let fdtd = Fdtd { precision, threads: NonZeroUsize::new(threads), instruction_set: set };
-                        best(fdtd, &model, &painted, 8)
+            for instruction_set in [InstructionSet::Avx512, InstructionSet::Avx2] {
+                if instruction_set == InstructionSet::Avx2 && nx > 750 {
+                    continue;
+                }
+                for threads in [1, 2] {
+                    let fdtd = Fdtd { precision: *precision, threads: NonZeroUsize::new(threads), instruction_set };
+                    let best = speeds(&model, &painted, fdtd, &orders, 6);
+                    let (cells, number, set) = (format!("{nx}x{ny}"), precision.name(), instruction_set.name());
+                    let print = |kind: &str, of: &dyn Fn(&Speed) -> f64| {
+                        let row: String = best.iter().map(|speed| format!("{:>8.0}", of(speed))).collect();
+                        println!("{cells:<11}{name:<10}{number:<8}{set:<9}{kind:<4}{row}");
                     };
-                    let (one, two) = (run(1), run(2));
-                    let (cells, number, set) = (format!("{nx}x{ny}"), precision.name(), set.name());
-                    println!("{cells:<12}{name:<10}{number:<8}{set:<9}{one:>9.0}{two:>10.0}");
+                    print(&format!("{threads}w"), &|speed| speed.wall);
+                    if threads == 1 {
+                        print("1p", &|speed| speed.processor);
+                    }
+                    if instruction_set == InstructionSet::Avx512 {
+                        let begin = std::time::Instant::now();
+                        let Ok(predicted) = predict(&model, &painted, fdtd.threads) else { continue };
+                        let milliseconds = 1e3 * begin.elapsed().as_secs_f64();
+                        let whole = predicted.seconds / (1.0 - predicted.share_saved);
+                        let speed = predicted.cell_steps as f64 / whole / 1e6;
+                        println!("{:>38}  predicted {speed:.0} in {milliseconds:.0} ms", "");
+                    }
                 }
             }
         }

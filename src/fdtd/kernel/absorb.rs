@@ -1,7 +1,8 @@
 //! The absorbing boundary: first-order HORIPML as corrections added to a row after its plain step.
 //!
 //! With `d` the difference of the plain step, the field gains `coefficient [(RA - 1) d + RB phi]`, then
-//! `phi <- RE phi - RF d` (Giannopoulos 2012, doi:10.1109/TAP.2011.2180344, first order).
+//! `phi <- RE phi - RF d` (Giannopoulos 2012, "Unsplit implementation of higher order PMLs", IEEE Trans. Antennas Propag.,
+//! doi:10.1109/TAP.2011.2180344, first order).
 
 use super::super::real::Real;
 

@@ -9,4 +9,4 @@ mod update;
 
 pub use absorb::{ColumnProfile, RowProfile, absorb_columns_e, absorb_columns_h, absorb_row_e, absorb_row_h};
 pub use relax::{Relaxation, relax};
-pub use update::{update_e, update_e_lossy, update_h, update_hy};
+pub use update::{update_e, update_e_lossy, update_h};

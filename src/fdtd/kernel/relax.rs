@@ -15,7 +15,8 @@ pub struct Relaxation<T, const P: usize> {
 
 /// Lets `P` poles act on E after its plain step, the absorbing boundary and the sources.
 ///
-/// Piecewise-linear recursive scheme of Giannakis & Giannopoulos 2014 (doi:10.1109/TAP.2014.2308549):
+/// Giannakis & Giannopoulos 2014, "A novel piecewise linear recursive convolution approach for dispersive media using the
+/// finite-difference time-domain method", IEEE Trans. Antennas Propag. 62, 2669-2678 (doi:10.1109/TAP.2014.2308549):
 /// `E <- E - sum c0 T / EA`, `T <- c1 T + c2 (E_old - E)`. Departs from the paper: `T` is scaled by `dt`, and both
 /// halves of its update are done at once, so that in single precision the difference of E is formed before the product.
 ///

@@ -15,16 +15,6 @@ pub fn update_h<T: Real>(hx: &mut [T], hy: &mut [T], ez: &[T], ez_south: &[T], e
     }
 }
 
-/// The part of [`update_h`] that lies between two rows: `Hy += Ez_{i+1} - Ez_i`.
-#[inline(always)]
-pub fn update_hy<T: Real>(hy: &mut [T], ez: &[T], ez_east: &[T]) {
-    let n = ez.len();
-    let (hy, ez_east) = (&mut hy[..n], &ez_east[..n]);
-    for j in 0..n {
-        hy[j] = hy[j] + (ez_east[j] - ez[j]);
-    }
-}
-
 /// One E step without conductivity: `Ez += cb [(Hy_i - Hy_{i-1}) - ratio (Hx_j - Hx_{j-1})]`.
 ///
 /// `cb = dt²/(mu0 dx² EA)`, `EA = eps/dt`; `ratio = dx²/dy²`; `cb = 0` holds the walls and perfect conductors.
