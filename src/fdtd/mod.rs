@@ -2,8 +2,10 @@
 //!
 //! [`Fdtd`] fulfils [`Forward`](crate::forward::Forward). A model is painted, turned into coefficients (`setup`), cut
 //! into blocks of rows, one per thread (`block`), and stepped (`team`), several steps per pass over the rows; the loops over
-//! a row are in `kernel`. Nodes where no wave is that a receiver will see are not stepped (`reach`). An effect that a model does not call for has no array: without conductivity there is no `ca`, the absorbing boundary has memory
-//! in its slabs only, and Debye relaxation on dispersive nodes only.
+//! a row are in `kernel`. Nodes where no wave is that a receiver will see are not stepped (`reach`).
+//!
+//! An effect that a model does not call for has no array: without conductivity there is no `ca`, the absorbing boundary has
+//! memory in its slabs only, and Debye relaxation on dispersive nodes only.
 //!
 //! Numbers below 1e-38 (single precision) are computed as IEEE 754 has them, never flushed to zero, so that the bits are the
 //! same everywhere. They occur in thin rims only: ahead of the first arrival, and some ninety skin depths inside a

@@ -1,16 +1,18 @@
 //! Speed of the embedded solver, in 10⁶ cells times steps per second of the loop: best of several short runs.
 //!
-//! `cargo bench --bench fdtd` prints the table; `-- small` only its first rows. Every step of every cell is
+//! `cargo bench --bench fdtd` prints the table; `-- small` only its first rows, `-- large` its last. Every step of every cell is
 //! made (`skip: false`); one step per pass is how a solver without time tiling goes over the grid.
 
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 
-use ballast_gpr::fdtd::{Fdtd, InstructionSet, Precision, Stepping, predict};
+use ballast_gpr::fdtd::{Fdtd, InstructionSet, Precision, Stepping, predict, reach};
 use ballast_gpr::model::{
     Axis, DebyePole, Excitation, Grid, HertzianDipole, Material, Model, Object, Painted, Receiver, Source, TimeWindow,
     Waveform, WaveformKind, paint,
 };
+use ballast_gpr::raster::build_model;
+use ballast_gpr::scene::{SceneSpec, resolve};
 
 /// A bed of cylinders in a host that fills the grid's lower half.
 fn bed(nx: usize, ny: usize, steps: usize, host: Material, stone: Material) -> Model {
@@ -77,10 +79,34 @@ fn speeds(model: &Model, painted: &Painted, fdtd: Fdtd, orders: &[Stepping], run
     best
 }
 
+/// The preset `tank`: what light cones and passes spare together.
+fn tank() {
+    let scene = SceneSpec::preset("tank").ok().and_then(|spec| resolve(&spec).ok());
+    let Some(model) = scene.and_then(|scene| build_model(&scene).ok()) else { return };
+    let Ok(painted) = paint(&model) else { return };
+    let Ok(reach) = reach(&model, &painted) else { return };
+    let plain = Stepping { steps_per_pass: NonZeroUsize::new(1), skip: false };
+    let orders = [plain, Stepping { steps_per_pass: None, ..plain }, Stepping::default()];
+    let fdtd = Fdtd { threads: NonZeroUsize::new(1), ..Fdtd::default() };
+    let best = speeds(&model, &painted, fdtd, &orders, 3);
+    println!("tank: {:.1} % of the cell-steps left out", 100.0 * reach.share_saved);
+    for (name, speed) in ["one step per pass", "several", "several, light cones"].iter().zip(best) {
+        println!("tank, one thread, {name}: {:.0} wall, {:.0} processor", speed.wall, speed.processor);
+    }
+}
+
 fn main() {
+    tank();
     let words: Vec<String> = std::env::args().collect();
-    let small = words.iter().any(|word| word == "small");
-    let sizes = if small { &[(750, 500)][..] } else { &[(750, 500), (1500, 1000), (3000, 2000)] };
+    let asked = |size: &str| words.iter().any(|word| word == size);
+    let all = [(750, 500), (1500, 1000), (3000, 2000)];
+    let sizes = if asked("small") {
+        &all[..1]
+    } else if asked("large") {
+        &all[2..]
+    } else {
+        &all[..]
+    };
     let mut wet = Material::dielectric("host", 3.5, 0.005);
     wet.poles.push(DebyePole { delta_eps: 6.0, tau: 9.231e-12 });
     wet.averagable = false;
