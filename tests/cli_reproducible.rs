@@ -92,6 +92,23 @@ fn each_sibling_is_a_single_build() {
     assert!(stones(5) != stones(6) && stones(6) != stones(7) && stones(5) != stones(7));
 }
 
+/// Siblings that were stopped half-way go on: what is whole stays untouched, what was begun is finished.
+#[test]
+fn stopped_siblings_go_on() {
+    let place = Place::new();
+    let build = [&["build", "--out", "many", "--realisations", "3"], &COARSE[..]].concat();
+    place.ok(&build);
+    let whole = timeless(&place, "many/seed-2");
+    fs::remove_file(place.path("many/seed-2/manifest.json")).unwrap();
+    fs::remove_file(place.path("many/seed-2/model.in")).unwrap();
+    fs::remove_dir_all(place.path("many/seed-3")).unwrap();
+    let told = place.ok(&build);
+    let lines: Vec<_> = told.lines().collect();
+    assert_eq!(lines[0], "many/seed-1: was there already", "{told}");
+    assert!(lines[1].contains("stones") && lines[2].contains("stones"), "{told}");
+    assert_same(&whole, &timeless(&place, "many/seed-2"));
+}
+
 /// One thread or four: the same model and the same trace, bit by bit.
 #[test]
 fn threads_change_no_byte() {

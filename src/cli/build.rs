@@ -12,8 +12,10 @@ use crate::cli::interrupt;
 use crate::cli::manifest::{Manifest, Seconds};
 use crate::cli::map_figure;
 use crate::cli::pack;
+use crate::cli::progress::Bar;
 use crate::cli::scene_args::SceneArgs;
 use crate::files;
+use crate::forward::Progress;
 use crate::gprmax::{self, InputOptions};
 use crate::model;
 use crate::raster;
@@ -66,7 +68,8 @@ pub fn run(args: &BuildArgs) -> Result<(), CliError> {
         .map(|path| Ok::<_, CliError>((path.display().to_string(), files::read_text(path)?)))
         .transpose()?;
     let base = args.out.clone().unwrap_or_else(|| default_folder(&spec, args.realisations));
-    let mut manifests = Vec::new();
+    let bar = Bar::new("building");
+    let mut manifests: Vec<serde_json::Value> = Vec::new();
     for index in 0..args.realisations {
         if interrupt::requested() {
             return Err(crate::forward::ForwardError::Stopped.into());
@@ -74,12 +77,26 @@ pub fn run(args: &BuildArgs) -> Result<(), CliError> {
         let mut spec = spec.clone();
         spec.seed = spec.seed.wrapping_add(u64::from(index));
         let target = if args.realisations == 1 { base.clone() } else { base.join(format!("seed-{}", spec.seed)) };
-        let manifest = build_folder(&spec, &target, template.clone(), args.force)?;
+        let state = if args.realisations > 1 && !args.force { sibling(&spec, &target)? } else { Sibling::New };
+        let said = match state {
+            Sibling::Whole => {
+                let text = files::read_text(&target.join(folder::MANIFEST))?;
+                manifests.push(serde_json::from_str(&text)?);
+                "was there already".to_string()
+            }
+            Sibling::New | Sibling::Begun => {
+                let force = args.force || state == Sibling::Begun;
+                let manifest = build_folder(&spec, &target, template.clone(), force)?;
+                manifests.push(serde_json::to_value(&manifest)?);
+                manifest.summary()
+            }
+        };
         if !args.json {
-            println!("{}: {}", target.display(), manifest.summary());
+            println!("{}: {said}", target.display());
         }
-        manifests.push(manifest);
+        let _ = bar.update(Progress { done: index as usize + 1, total: args.realisations as usize });
     }
+    drop(bar);
     if args.json {
         println!("{}", serde_json::to_string_pretty(&manifests)?);
     } else {
@@ -88,6 +105,26 @@ pub fn run(args: &BuildArgs) -> Result<(), CliError> {
         eprintln!("\nnext: ballast-gpr run {next}");
     }
     Ok(())
+}
+
+/// What an earlier call left of one of several siblings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Sibling {
+    /// Nothing.
+    New,
+    /// The same scene, not finished.
+    Begun,
+    /// The same scene, complete.
+    Whole,
+}
+
+/// Looks at the folder of a sibling: a call that was stopped goes on where it was.
+fn sibling(spec: &SceneSpec, target: &Path) -> Result<Sibling, CliError> {
+    let Ok(text) = files::read_text(&target.join(folder::SCENE)) else { return Ok(Sibling::New) };
+    if text != scene::resolve(spec)?.spec.to_toml()? {
+        return Ok(Sibling::New);
+    }
+    Ok(if folder::is_built(target) { Sibling::Whole } else { Sibling::Begun })
 }
 
 /// Builds one folder.
@@ -100,6 +137,7 @@ pub fn build_folder(
     template: Option<(String, String)>,
     force: bool,
 ) -> Result<Manifest, CliError> {
+    folder::check_free(target, force)?;
     let mut scene = scene::resolve(spec)?;
     let started = Instant::now();
     let model = raster::build_model(&scene)?;

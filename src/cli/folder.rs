@@ -15,11 +15,11 @@ pub const MODEL: &str = "model.in";
 /// Files that decide what a solver computes, hashed into each result.
 const MODEL_FILES: [&str; 3] = [MODEL, "model_geometry.h5", "model_materials.json"];
 
-/// Makes a folder ready to be written.
+/// Refuses a folder that may not be written, before anything is computed for it.
 ///
 /// # Errors
-/// When it holds something and `force` is not set.
-pub fn prepare(folder: &Path, force: bool) -> Result<(), CliError> {
+/// When it is a file, or holds something and `force` is not set.
+pub fn check_free(folder: &Path, force: bool) -> Result<(), CliError> {
     let occupied = fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some());
     if folder.is_file() {
         return Err(CliError::input(format!(
@@ -33,6 +33,15 @@ pub fn prepare(folder: &Path, force: bool) -> Result<(), CliError> {
             folder.display()
         )));
     }
+    Ok(())
+}
+
+/// Makes a folder ready to be written.
+///
+/// # Errors
+/// See [`check_free`]; when it cannot be made.
+pub fn prepare(folder: &Path, force: bool) -> Result<(), CliError> {
+    check_free(folder, force)?;
     files::create_folder(folder)?;
     let manifest = folder.join(MANIFEST);
     if manifest.exists() {
