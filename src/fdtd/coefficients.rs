@@ -1,7 +1,7 @@
 //! From materials to the numbers of the kernels, in double precision.
 
 use super::FdtdError;
-use crate::model::{DebyePole, Material, Model, Painted};
+use crate::model::{DebyePole, EdgeMaterial, Material, Model, Painted};
 use crate::units::constants::{EPSILON_0, MU_0, Z0};
 
 /// The most Debye poles a material may have.
@@ -36,15 +36,16 @@ pub fn edges(model: &Model, painted: &Painted) -> Result<Vec<Edge>, FdtdError> {
     for (material, _) in model.materials.iter().zip(present).filter(|(_, cells)| *cells > 0) {
         check_material(material)?;
     }
-    let (dt, dx) = (model.time_step(), model.grid.spacing[0]);
-    let edge = |entry: &crate::model::EdgeMaterial| {
-        if entry.sigma.is_infinite() {
-            return Edge { ca: 1.0, cb: 0.0, source: 0.0, poles: vec![] };
-        }
-        let poles = entry.dispersive.map_or(&[][..], |id| &model.materials[id.index()].poles);
-        edge(entry.eps_r, entry.sigma, poles, dt, dx)
-    };
-    Ok(painted.palette.iter().map(edge).collect())
+    Ok(painted.palette.iter().map(|entry| edge_of(model, entry)).collect())
+}
+
+/// The coefficients of one entry of a palette.
+pub fn edge_of(model: &Model, entry: &EdgeMaterial) -> Edge {
+    if entry.sigma.is_infinite() {
+        return Edge { ca: 1.0, cb: 0.0, source: 0.0, poles: vec![] };
+    }
+    let poles = entry.dispersive.map_or(&[][..], |id| &model.materials[id.index()].poles);
+    edge(entry.eps_r, entry.sigma, poles, model.time_step(), model.grid.spacing[0])
 }
 
 /// `EA = eps0 eps_r/dt + sigma/2 + (eps0/dt) sum delta_eps (1 - exp(-dt/(2 tau)))`; the sum stands in `EB` too, so a
@@ -68,6 +69,15 @@ fn check_material(material: &Material) -> Result<(), FdtdError> {
         let (mu_r, sigma_magnetic) = (material.mu_r, material.sigma_magnetic);
         return Err(FdtdError::Magnetic { material: id(), mu_r, sigma_magnetic });
     }
+    check_electric(material)
+}
+
+/// Refuses what no solver here can do with a material's electric side.
+///
+/// # Errors
+/// With the material, its value and the limit.
+pub fn check_electric(material: &Material) -> Result<(), FdtdError> {
+    let id = || material.id.clone();
     let poles = material.poles.iter().filter(|pole| pole.delta_eps != 0.0).count();
     if poles > MOST_POLES {
         return Err(FdtdError::TooManyPoles { material: id(), poles, most: MOST_POLES });
@@ -101,6 +111,11 @@ pub struct Slab {
 }
 
 impl Slab {
+    /// A slab whose wall conducts so much.
+    pub fn new(cells: usize, sigma_max: f64, dt: f64) -> Self {
+        Self { cells, sigma_max, dt }
+    }
+
     /// `RA - 1, RB, RE, RF` at a depth counted in cells from the entrance; no absorption at or before it.
     ///
     /// First-order HORIPML with `kappa = 1`, `alpha = 0` and `sigma = sigma_max depth⁴`.

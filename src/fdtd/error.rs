@@ -127,6 +127,49 @@ pub enum FdtdError {
         /// E there, V/m.
         value: f64,
     },
+    /// A source on the outer wall of a three-dimensional grid, where E is zero.
+    #[error(
+        "source {number}, along {}, lies on the outer wall, at node ({}, {}, {}), where E stays zero\n\n\
+         hint: move it inwards",
+        axis.name(), node[0], node[1], node[2]
+    )]
+    OnWall {
+        /// Place in the list of sources, from 1.
+        number: usize,
+        /// Its direction.
+        axis: Axis,
+        /// Its node.
+        node: [usize; 3],
+    },
+    /// A source in a perfect conductor of a three-dimensional grid, where E is zero.
+    #[error(
+        "source {number} lies in a perfect conductor, at node ({}, {}, {}), where E stays zero\n\nhint: move it out",
+        node[0], node[1], node[2]
+    )]
+    InConductor {
+        /// Place in the list of sources, from 1.
+        number: usize,
+        /// Its node.
+        node: [usize; 3],
+    },
+    /// Fields of a three-dimensional run that grew beyond reason.
+    #[error(
+        "E{} at step {step} is {value:e} V/m at node ({}, {}, {}), ({} m, {} m, {} m): the run diverged\n\n\
+         hint: please report the model; a smaller `#time_step_stability_factor` may help",
+        axis.name(), node[0], node[1], node[2], position[0], position[1], position[2]
+    )]
+    DivergedAt {
+        /// Step at which it was seen.
+        step: usize,
+        /// Component of E.
+        axis: Axis,
+        /// Where.
+        node: [usize; 3],
+        /// Position of the node, m.
+        position: [f64; 3],
+        /// E there, V/m.
+        value: f64,
+    },
     /// The caller asked to stop.
     #[error("stopped on request")]
     Stopped,
@@ -136,7 +179,7 @@ impl From<FdtdError> for ForwardError {
     fn from(error: FdtdError) -> Self {
         match error {
             FdtdError::Stopped => Self::Stopped,
-            FdtdError::Diverged { .. } | FdtdError::NoSuchInstructions { .. } => Self::Solver(Box::new(error)),
+            FdtdError::Diverged { .. } | FdtdError::DivergedAt { .. } | FdtdError::NoSuchInstructions { .. } => Self::Solver(Box::new(error)),
             model => Self::Model(Box::new(model)),
         }
     }

@@ -1,4 +1,5 @@
-//! The embedded finite-difference time-domain solver: two-dimensional (TMz, invariant along z), gprMax's numerics.
+//! The embedded finite-difference time-domain solver, gprMax's numerics: two-dimensional (TMz, invariant along z) here, all
+//! other grids in `three`.
 //!
 //! [`Fdtd`] fulfils [`Forward`](crate::forward::Forward). A model is painted, turned into coefficients (`setup`), cut
 //! into blocks of rows, one per thread (`block`), and stepped (`team`), several steps per pass over the rows; the loops over
@@ -24,9 +25,11 @@ mod real;
 mod setup;
 mod solver;
 mod team;
+mod three;
 
 pub use error::FdtdError;
 pub use instructions::InstructionSet;
 pub use predict::{Prediction, predict};
 pub use reach::{Reach, reach};
 pub use solver::{Fdtd, Precision, Stats, Stepping};
+pub use three::predict_three;

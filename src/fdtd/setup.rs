@@ -93,7 +93,7 @@ pub fn check_model(model: &Model) -> Result<(), FdtdError> {
 }
 
 /// Node of a position, if it lies in the grid.
-fn node_in_grid(model: &Model, position: [f64; 3], name: impl Fn() -> String) -> Result<[usize; 3], FdtdError> {
+pub fn node_in_grid(model: &Model, position: [f64; 3], name: impl Fn() -> String) -> Result<[usize; 3], FdtdError> {
     let grid = &model.grid;
     let node: [i64; 3] = std::array::from_fn(|axis| grid.node(axis, position[axis]));
     for (axis, of) in [Axis::X, Axis::Y, Axis::Z].into_iter().enumerate() {

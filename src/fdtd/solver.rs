@@ -43,7 +43,7 @@ impl Precision {
     }
 }
 
-/// The embedded solver: second-order finite differences in time and space, two-dimensional (TMz), with gprMax's rules
+/// The embedded solver: second-order finite differences in time and space, two- or three-dimensional, with gprMax's rules
 /// for edges, sources, dispersion and the absorbing boundary.
 ///
 /// The traces have the same bits for every instruction set and any number of threads.
@@ -110,6 +110,9 @@ impl Fdtd {
     /// # Errors
     /// See [`FdtdError`].
     pub fn solve_stats(&self, model: &Model, on_progress: OnProgress<'_>) -> Result<(Traces, Stats), FdtdError> {
+        if model.grid.invariant_axis() != Some(2) {
+            return self.solve_three(model, on_progress);
+        }
         check_model(model)?;
         check_memory(painting_bytes(model), available_memory())?;
         let painted = paint(model)?;
@@ -119,7 +122,8 @@ impl Fdtd {
         self.solve_painted(model, &painted, on_progress)
     }
 
-    /// Runs a model that has been painted (and its resolution checked) already.
+    /// Runs a two-dimensional model that has been painted (and its resolution checked) already; for other grids see
+    /// [`Fdtd::solve_painted_three`].
     ///
     /// # Errors
     /// See [`FdtdError`].

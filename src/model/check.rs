@@ -1,6 +1,6 @@
 //! Whether a model can be run well: resolution, time step, absorbing cells, memory.
 
-use super::{Grid, Model, Painted};
+use super::{Grid, Model, Painted, Painted3};
 use crate::units::constants::C0;
 use crate::units::{Hertz, Metres};
 
@@ -88,13 +88,22 @@ pub struct Resolution {
 impl Resolution {
     /// Reads the resolution off a model; `None` without a source. Perfect conductors hold no wave and do not count.
     pub fn of(model: &Model, painted: &Painted) -> Option<Self> {
+        Self::of_present(model, painted.cells_per_material(model.materials.len()))
+    }
+
+    /// As [`Resolution::of`], for any grid.
+    pub fn of_three(model: &Model, painted: &Painted3) -> Option<Self> {
+        Self::of_present(model, painted.cells_per_material(model.materials.len()))
+    }
+
+    /// The same from how many cells hold each material.
+    fn of_present(model: &Model, present: Vec<usize>) -> Option<Self> {
         use super::Source;
         let highest = |source: &Source| {
             let Source::HertzianDipole(dipole) = source;
             model.waveforms.get(dipole.waveform).map(super::Waveform::highest_frequency)
         };
         let frequency = model.sources.iter().filter_map(highest).max_by(f64::total_cmp)?;
-        let present = painted.cells_per_material(model.materials.len());
         let candidates = model.materials.iter().zip(present).filter(|(m, cells)| *cells > 0 && !m.is_pec());
         let of = |m: &super::Material| (m.id.clone(), m.eps_r_at(frequency) * m.mu_r);
         let (material, eps_r) = candidates.map(|(m, _)| of(m)).max_by(|a, b| a.1.total_cmp(&b.1))?;

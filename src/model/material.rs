@@ -79,6 +79,11 @@ impl Material {
         !self.poles.is_empty()
     }
 
+    /// Whether the material acts on the magnetic field.
+    pub fn is_magnetic(&self) -> bool {
+        self.mu_r != 1.0 || self.sigma_magnetic != 0.0
+    }
+
     /// Relative permittivity (real part, without conduction) at a frequency in Hz.
     pub fn eps_r_at(&self, frequency: f64) -> f64 {
         let omega = 2.0 * std::f64::consts::PI * frequency;

@@ -7,9 +7,12 @@
 mod check;
 mod effects;
 mod grid;
+mod indices;
 mod material;
 mod object;
 mod paint;
+mod paint3;
+mod painted3;
 mod palette;
 mod source;
 mod spec;
@@ -20,9 +23,12 @@ pub use check::{
 };
 pub use effects::{Effect, Effects};
 pub use grid::{Grid, ceil_half_down};
+pub use indices::Indices;
 pub use material::{DebyePole, Material, MaterialId};
 pub use object::{Object, Voxels};
 pub use paint::{PaintError, Painted, check_two_dimensional, paint};
-pub use palette::EdgeMaterial;
+pub use paint3::{check_grid, paint3};
+pub use painted3::Painted3;
+pub use palette::{EdgeMaterial, FaceMaterial};
 pub use source::{Axis, Excitation, HertzianDipole, Receiver, Source, Waveform, WaveformKind};
 pub use spec::{Model, TimeWindow};

@@ -31,6 +31,17 @@ pub enum Object {
         /// Whether the edges on its surface take the mean of the materials around them.
         averaging: bool,
     },
+    /// A ball: `#sphere`.
+    Sphere {
+        /// Centre, m.
+        centre: [f64; 3],
+        /// Radius, m. Not snapped to the grid.
+        radius: f64,
+        /// What it is made of.
+        material: MaterialId,
+        /// Whether the edges on its surface take the mean of the materials around them.
+        averaging: bool,
+    },
     /// A block of cells with their materials: `#geometry_objects_read`.
     Voxels(Voxels),
 }

@@ -6,7 +6,7 @@
 //! edges, and the last to claim an edge gives it its material. Painting a cell anew drops only that cell's own claim.
 
 use super::palette::{EdgeMaterial, Palette};
-use super::{Grid, Material, MaterialId, Model, Object, Voxels};
+use super::{Grid, Material, MaterialId, Model, Object, Voxels, paint3};
 
 /// The cells and edges of a two-dimensional model (invariant along z).
 #[derive(Debug, Clone, PartialEq)]
@@ -69,7 +69,7 @@ pub enum PaintError {
     FillsNoCell {
         /// Place in the list of objects, from 1.
         number: usize,
-        /// `box`, `cylinder` or `block of voxels`.
+        /// `box`, `cylinder`, `sphere` or `block of voxels`.
         kind: &'static str,
         /// Identifier of its material.
         material: String,
@@ -110,6 +110,9 @@ pub enum PaintError {
 /// When the grid is not two-dimensional along z, or an object fills no cell or has no such material.
 pub fn paint(model: &Model) -> Result<Painted, PaintError> {
     check_two_dimensional(model)?;
+    if model.objects.iter().any(|object| matches!(object, Object::Sphere { .. })) {
+        return Ok(paint3(model)?.into_plane());
+    }
     let mut canvas = Canvas::new(model);
     for (index, object) in model.objects.iter().enumerate() {
         canvas.object(index + 1, object)?;
@@ -165,6 +168,11 @@ impl<'a> Canvas<'a> {
             &Object::Cylinder { start, end, radius, material, averaging } => {
                 self.known(number, material)?;
                 ("cylinder", material, start, self.fill_cylinder(start, end, radius, material, averaging))
+            }
+            &Object::Sphere { centre, material, .. } => {
+                self.known(number, material)?;
+                // `paint` hands models with spheres to `paint3`.
+                ("sphere", material, centre, 0)
             }
             Object::Voxels(voxels) => {
                 if voxels.shape.iter().product::<usize>() != voxels.cells.len() {

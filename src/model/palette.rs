@@ -15,6 +15,23 @@ pub struct EdgeMaterial {
     pub dispersive: Option<MaterialId>,
 }
 
+/// What lies on one face of the grid, where H lives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FaceMaterial {
+    /// Relative permeability.
+    pub mu_r: f64,
+    /// Magnetic loss, ohm/m.
+    pub sigma_magnetic: f64,
+}
+
+impl FaceMaterial {
+    /// The harmonic mean of the two cells that share the face; without loss where either has none.
+    pub(super) fn between(a: &Material, b: &Material) -> Self {
+        let mean = |a: f64, b: f64| if a == b { a } else { 2.0 * a * b / (a + b) };
+        Self { mu_r: mean(a.mu_r, b.mu_r), sigma_magnetic: mean(a.sigma_magnetic, b.sigma_magnetic) }
+    }
+}
+
 /// The distinct edge materials met so far.
 pub(super) struct Palette<'a> {
     materials: &'a [Material],

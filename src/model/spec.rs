@@ -36,6 +36,10 @@ pub struct Model {
     pub sources: Vec<Source>,
     /// Receivers.
     pub receivers: Vec<Receiver>,
+    /// How far all sources move from one trace of a B-scan to the next, m (`#src_steps`).
+    pub source_steps: [f64; 3],
+    /// How far all receivers move from one trace of a B-scan to the next, m (`#rx_steps`).
+    pub receiver_steps: [f64; 3],
 }
 
 impl Model {
@@ -53,6 +57,8 @@ impl Model {
             objects: vec![],
             sources: vec![],
             receivers: vec![],
+            source_steps: [0.0; 3],
+            receiver_steps: [0.0; 3],
         }
     }
 
@@ -60,6 +66,31 @@ impl Model {
     pub fn add_material(&mut self, material: Material) -> MaterialId {
         self.materials.push(material);
         MaterialId((self.materials.len() - 1) as u16)
+    }
+
+    /// The model of one trace of a B-scan, counted from 0: sources and receivers moved by so many steps.
+    ///
+    /// A position and a step are rounded to whole cells each, as in gprMax, so that no trace is a cell off.
+    pub fn at_trace(&self, trace: usize) -> Self {
+        let grid = self.grid;
+        let moved = |position: [f64; 3], steps: [f64; 3]| {
+            std::array::from_fn(|axis| {
+                let step = grid.node(axis, steps[axis]);
+                if step == 0 || trace == 0 {
+                    return position[axis];
+                }
+                (grid.node(axis, position[axis]) + step * trace as i64) as f64 * grid.spacing[axis]
+            })
+        };
+        let mut model = self.clone();
+        for source in &mut model.sources {
+            let Source::HertzianDipole(dipole) = source;
+            dipole.position = moved(dipole.position, self.source_steps);
+        }
+        for receiver in &mut model.receivers {
+            receiver.position = moved(receiver.position, self.receiver_steps);
+        }
+        model
     }
 
     /// Looks a material up by its identifier.

@@ -55,8 +55,8 @@ pub fn read_input(path: &Path) -> Result<Input, InFileError> {
         &["add_dispersion_debye"],
         &["waveform"],
         &["hertzian_dipole"],
-        &["rx"],
-        &["box", "cylinder", "geometry_objects_read"],
+        &["rx", "rx_array"],
+        &["box", "cylinder", "sphere", "geometry_objects_read"],
     ];
     for pass in passes {
         for command in commands.iter().filter(|command| pass.contains(&command.name)) {

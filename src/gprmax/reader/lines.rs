@@ -44,7 +44,7 @@ pub(super) fn split(text: &str) -> Result<(Vec<Command<'_>>, Vec<usize>), (usize
             CommandKind::Retired(instead) => return Err((line, Problem::Retired { command: name.into(), instead })),
             CommandKind::GprMaxOnly => return Err((line, Problem::Unsupported { command: name.into() })),
             CommandKind::Multiple => {}
-            CommandKind::Noted(_) if !["output_dir", "src_steps", "rx_steps"].contains(&name) => {}
+            CommandKind::Noted(_) if name != "output_dir" => {}
             CommandKind::Single | CommandKind::Noted(_) => {
                 if let Some(first) = commands.iter().find(|earlier| alias(earlier.name) == alias(name)) {
                     return Err((line, Problem::Duplicate { command: name.into(), first: first.line }));

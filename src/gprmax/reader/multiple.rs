@@ -26,7 +26,9 @@ pub(super) fn apply(
         "waveform" => waveform(model, command),
         "hertzian_dipole" => hertzian_dipole(model, command),
         "rx" => receiver(model, command, notes),
+        "rx_array" => receiver_array(model, command),
         "box" => cuboid(model, command),
+        "sphere" => sphere(model, command),
         "cylinder" => cylinder(model, command),
         _ => geometry_objects_read(model, path, command),
     }
@@ -157,6 +159,43 @@ fn receiver(model: &mut Model, command: &Command<'_>, notes: &mut Vec<Note>) -> 
     Ok(())
 }
 
+/// The most receivers that one `#rx_array` may make.
+const MOST_RECEIVERS: f64 = 1e6;
+
+/// Receivers on a lattice of nodes, z fastest. Both corners are nodes of it where the steps divide the distance; a step of
+/// zero stands for no lattice along that axis.
+fn receiver_array(model: &mut Model, command: &Command<'_>) -> Result<(), Problem> {
+    let p = Parameters::of(command, "X1 Y1 Z1 X2 Y2 Z2 DX DY DZ", |n| n == 9)?;
+    let (lower, upper, steps) = (p.point(0)?, p.point(3)?, p.point(6)?);
+    inside(model, "receiver", lower)?;
+    inside(model, "receiver", upper)?;
+    let grid = model.grid;
+    let mut lattice: [Vec<i64>; 3] = Default::default();
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        let (low, high) = (grid.node(axis, lower[axis]), grid.node(axis, upper[axis]));
+        if low > high {
+            return Err(Problem::Corners { axis: name, lower: lower[axis], upper: upper[axis] });
+        }
+        let step = grid.node(axis, steps[axis]);
+        p.check("the step", steps[axis], steps[axis] >= 0.0, "0 or more")?;
+        p.check("the step", steps[axis], step > 0 || low == high || steps[axis] == 0.0, "at least one cell")?;
+        lattice[axis] = if step == 0 { vec![low] } else { (low..=high).step_by(step as usize).collect() };
+    }
+    let [xs, ys, zs] = &lattice;
+    let count = xs.len() as f64 * ys.len() as f64 * zs.len() as f64;
+    p.check("the number of receivers", count, count <= MOST_RECEIVERS, "at most 1e6")?;
+    for &i in xs {
+        for &j in ys {
+            for &k in zs {
+                let node = [i, j, k];
+                let position = std::array::from_fn(|axis| node[axis] as f64 * grid.spacing[axis]);
+                model.receivers.push(Receiver { position, name: None });
+            }
+        }
+    }
+    Ok(())
+}
+
 fn cuboid(model: &mut Model, command: &Command<'_>) -> Result<(), Problem> {
     let p = Parameters::of(command, "X1 Y1 Z1 X2 Y2 Z2 MATERIAL [y|n]", |n| (7..=11).contains(&n))?;
     let (lower, upper) = (p.point(0)?, p.point(3)?);
@@ -180,6 +219,15 @@ fn cylinder(model: &mut Model, command: &Command<'_>) -> Result<(), Problem> {
     p.check("the radius", radius, radius > 0.0, "above 0")?;
     let (material, averaging) = stuff(model, &p, 7)?;
     model.objects.push(Object::Cylinder { start, end, radius, material, averaging });
+    Ok(())
+}
+
+fn sphere(model: &mut Model, command: &Command<'_>) -> Result<(), Problem> {
+    let p = Parameters::of(command, "X Y Z RADIUS MATERIAL [y|n]", |n| (5..=9).contains(&n))?;
+    let (centre, radius) = (p.point(0)?, p.number(3, "a radius in metres")?);
+    p.check("the radius", radius, radius > 0.0, "above 0")?;
+    let (material, averaging) = stuff(model, &p, 4)?;
+    model.objects.push(Object::Sphere { centre, radius, material, averaging });
     Ok(())
 }
 

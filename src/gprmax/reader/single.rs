@@ -47,11 +47,21 @@ pub(super) fn start(path: &Path, commands: &[Command<'_>]) -> Result<Model, InFi
             .and_then(|p| if p.yes_or_no(0, "a flag")? { Err(p.unsupported("the flag `y`")) } else { Ok(()) });
         on.map_err(at(command))?;
     }
+    if let Some(command) = find("src_steps") {
+        model.source_steps = steps(command).map_err(at(command))?;
+    }
+    if let Some(command) = find("rx_steps") {
+        model.receiver_steps = steps(command).map_err(at(command))?;
+    }
     match find("pml_cells") {
         Some(command) => model.pml_cells = Some(pml_cells(command, &grid).map_err(at(command))?),
         None => check_default_pml(path, &model)?,
     }
     Ok(model)
+}
+
+fn steps(command: &Command<'_>) -> Result<[f64; 3], Problem> {
+    Parameters::of(command, "DX DY DZ", |n| n == 3)?.point(0)
 }
 
 fn cell_sizes(command: &Command<'_>) -> Result<[f64; 3], Problem> {

@@ -21,7 +21,7 @@ pub const DEFAULT_TEMPLATE: &str = include_str!("../../../templates/model.in");
 /// `stability_factor`, `threads`; lists `domain`, `spacing`, `cells`, `pml_cells`; the number `iterations`; `materials` (each
 /// `id`, `eps_r`, `sigma`, `mu_r`, `sigma_magnetic`, `poles` with `delta_eps`, `tau`), `waveforms` (`kind`, `amplitude`,
 /// `frequency`, `id`), `sources` (`polarisation`, `position`, `waveform`, `start`, `stop`), `receivers` (`position`, `name`),
-/// and `objects`, the finished lines. What is not given is an empty text or list; a name that does not exist is an error.
+/// lists `source_steps`, `receiver_steps`, and `objects`, the finished lines. What is not given is an empty text or list; a name that does not exist is an error.
 #[derive(Debug, Clone, Default)]
 pub struct InputOptions {
     /// Name and text of a template to use instead of [`DEFAULT_TEMPLATE`].
@@ -46,7 +46,10 @@ struct Page {
     waveforms: Vec<WaveformLine>,
     sources: Vec<SourceLine>,
     receivers: Vec<ReceiverLine>,
-    /// `#box`, `#cylinder` and `#geometry_objects_read` lines, in the order of painting.
+    /// Empty where nothing moves.
+    source_steps: Vec<String>,
+    receiver_steps: Vec<String>,
+    /// `#box`, `#cylinder`, `#sphere` and `#geometry_objects_read` lines, in the order of painting.
     objects: Vec<String>,
 }
 
@@ -173,8 +176,14 @@ fn page(model: &Model, voxels: &VoxelFiles<'_>) -> Result<Page, WriteError> {
             .iter()
             .map(|r| ReceiverLine { position: r.position.map(number), name: r.name.clone().unwrap_or_default() })
             .collect(),
+        source_steps: steps(model.source_steps),
+        receiver_steps: steps(model.receiver_steps),
         objects,
     })
+}
+
+fn steps(steps: [f64; 3]) -> Vec<String> {
+    if steps == [0.0; 3] { vec![] } else { steps.map(number).into() }
 }
 
 fn materials(model: &Model, voxels: &VoxelFiles<'_>) -> Vec<MaterialLine> {
@@ -237,6 +246,10 @@ fn object_line(
         Object::Cylinder { start, end, radius, material, averaging } => {
             let stuff = stuff(material, *averaging)?;
             Ok(Some(format!("#cylinder: {} {} {} {stuff}", point(start), point(end), number(*radius))))
+        }
+        Object::Sphere { centre, radius, material, averaging } => {
+            let stuff = stuff(material, *averaging)?;
+            Ok(Some(format!("#sphere: {} {} {stuff}", point(centre), number(*radius))))
         }
         Object::Voxels(block) => Ok(voxels.line(index, block)),
     }

@@ -37,7 +37,7 @@ impl<'a> VoxelFiles<'a> {
         };
         for (index, object) in model.objects.iter().enumerate() {
             match object {
-                Object::Box { material, .. } | Object::Cylinder { material, .. } => {
+                Object::Box { material, .. } | Object::Cylinder { material, .. } | Object::Sphere { material, .. } => {
                     files.in_commands.insert(*material);
                 }
                 Object::Voxels(block) => {

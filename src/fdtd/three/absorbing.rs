@@ -1,0 +1,147 @@
+//! The memory and profiles of the absorbing cells that a plane passes through.
+
+use super::super::coefficients::Slab;
+use super::super::real::Real;
+use super::kernel::{ColumnProfile, RowProfile};
+use super::setup::Setup3;
+use super::sheet::{LANES, Sheet};
+
+/// The memory of the two E and the two H components that a slab across one axis corrects, and the factors that stand
+/// before the difference in their curls (a sign, and the ratio of non-cubic cells).
+///
+/// A slab across axis `a` corrects, of E and of H alike, the components along the two axes after it in cyclic order: the
+/// first of them by the second's conjugate with a minus in E, the second by the first's with a plus (in H the other way).
+#[derive(Debug)]
+pub struct Memory<T> {
+    /// First component, then second.
+    pub e: [Sheet<T>; 2],
+    /// First component, then second.
+    pub h: [Sheet<T>; 2],
+}
+
+impl<T: Real> Memory<T> {
+    fn new(rows: usize, width: usize) -> Self {
+        let sheet = || Sheet::zeros(rows, width);
+        Self { e: [sheet(), sheet()], h: [sheet(), sheet()] }
+    }
+}
+
+/// Factors before the differences: E of the first and second component, H of the first and second.
+fn factors(setup: &Setup3<'_>, axis: usize) -> [f64; 4] {
+    let first = (axis + 1) % 3;
+    [-setup.ratio(first), 1.0, 1.0, -1.0]
+}
+
+/// The rows of a slab across x or y: four profiles, for E of the first and second component, and H.
+pub type Profiles<T> = [RowProfile<T>; 4];
+
+/// Profiles of the row or plane `index` within the slabs across an axis; `None` outside them.
+pub fn profiles<T: Real>(setup: &Setup3<'_>, axis: usize, index: usize) -> Option<Profiles<T>> {
+    let (low, high) = (&setup.slabs[axis], &setup.slabs[axis + 3]);
+    let n = setup.painted.cells[axis];
+    let depth = |at: f64| {
+        let (below, above) = (low.cells as f64 - at, at - (n - high.cells) as f64);
+        if below > 0.0 && low.cells > 0 {
+            low.at(below)
+        } else if above > 0.0 && high.cells > 0 {
+            high.at(above)
+        } else {
+            [0.0, 1.0, 1.0, 0.0]
+        }
+    };
+    if index >= low.cells && index + high.cells < n {
+        return None;
+    }
+    let factors = factors(setup, axis);
+    Some(std::array::from_fn(|of| {
+        let at = index as f64 + if of < 2 { 0.0 } else { 0.5 };
+        let [ra_less_one, rb, re, rf] = depth(at);
+        RowProfile {
+            ra_less_one: T::of(factors[of] * ra_less_one),
+            rb: T::of(factors[of] * rb),
+            re: T::of(re),
+            rf: T::of(rf),
+        }
+    }))
+}
+
+/// The absorbing cells at one end of z: the same in every plane.
+#[derive(Debug)]
+pub struct Columns<T> {
+    /// First node.
+    pub k: usize,
+    /// Nodes.
+    pub count: usize,
+    /// E of the first and second component, and H: `RA - 1`, `RB`, `RE`, `RF` at each node.
+    profiles: [[Vec<T>; 4]; 4],
+}
+
+impl<T: Real> Columns<T> {
+    /// The ends that have absorbing cells. The counts are padded to whole vectors with nodes that absorb nothing.
+    pub fn both(setup: &Setup3<'_>) -> Vec<Self> {
+        let nz = setup.painted.cells[2];
+        let factors = factors(setup, 2);
+        let one = |low: bool| {
+            let slab: &Slab = &setup.slabs[if low { 2 } else { 5 }];
+            if slab.cells == 0 {
+                return None;
+            }
+            let count = slab.cells.next_multiple_of(LANES).min(nz);
+            let k = if low { 0 } else { nz - count };
+            let profile = |of: usize| -> [Vec<T>; 4] {
+                let at = |node: usize| {
+                    let z = node as f64 + if of < 2 { 0.0 } else { 0.5 };
+                    let depth = if low { slab.cells as f64 - z } else { z - (nz - slab.cells) as f64 };
+                    let [ra_less_one, rb, re, rf] = slab.at(depth);
+                    [factors[of] * ra_less_one, factors[of] * rb, re, rf]
+                };
+                std::array::from_fn(|c| (k..k + count).map(|node| T::of(at(node)[c])).collect())
+            };
+            Some(Self { k, count, profiles: std::array::from_fn(profile) })
+        };
+        [true, false].into_iter().filter_map(one).collect()
+    }
+
+    /// The profile of E of the first (0) or second (1) component, or of H (2, 3).
+    #[inline(always)]
+    pub fn profile(&self, of: usize) -> ColumnProfile<'_, T> {
+        let [ra_less_one, rb, re, rf] = &self.profiles[of];
+        ColumnProfile { ra_less_one, rb, re, rf }
+    }
+}
+
+/// The absorbing memory of one plane.
+#[derive(Debug)]
+pub struct Absorbing<T> {
+    /// Where the plane lies within a slab across x.
+    pub x: Option<(Profiles<T>, Memory<T>)>,
+    /// Rows of the slabs across y, one after the other.
+    pub y: Option<Memory<T>>,
+    /// At each end of z.
+    pub z: Vec<Memory<T>>,
+}
+
+impl<T: Real> Absorbing<T> {
+    /// Allocates what plane `i` needs.
+    pub fn new(setup: &Setup3<'_>, i: usize, width: usize, columns: &[Columns<T>]) -> Self {
+        let [_, ny, _] = setup.painted.cells;
+        let rows = setup.slabs[1].cells + setup.slabs[4].cells;
+        Self {
+            x: profiles(setup, 0, i).map(|profiles| (profiles, Memory::new(ny - 1, width))),
+            y: (rows > 0).then(|| Memory::new(rows - 1, width)),
+            z: columns.iter().map(|c| Memory::new(ny - 1, c.count.next_multiple_of(LANES))).collect(),
+        }
+    }
+
+    /// Memory of all planes, bytes.
+    pub fn bytes(setup: &Setup3<'_>, width: usize) -> u64 {
+        let [nx, ny, nz] = setup.painted.cells;
+        let cells = setup.slabs.each_ref().map(|slab| slab.cells);
+        let of_x = (cells[0] + cells[3]) as u64 * 4 * Sheet::<T>::bytes(ny - 1, width);
+        let rows = cells[1] + cells[4];
+        let of_y = if rows > 0 { nx as u64 * 4 * Sheet::<T>::bytes(rows - 1, width) } else { 0 };
+        let column = |count: usize| Sheet::<T>::bytes(ny - 1, count.next_multiple_of(LANES).min(nz.next_multiple_of(LANES)));
+        let of_z: u64 = [cells[2], cells[5]].into_iter().filter(|&count| count > 0).map(column).sum();
+        of_x + of_y + nx as u64 * 4 * of_z
+    }
+}

@@ -1,0 +1,352 @@
+//! A plane of the grid across x with everything that acts on it, and its step.
+
+use super::super::instructions::InstructionSet;
+use super::absorbing::{Absorbing, Columns, Profiles, profiles};
+use super::grades::{Grades, Lookup, Table};
+use super::instructions::Number;
+use super::kernel::{
+    EdgeRow, absorb_columns, absorb_columns_scaled, absorb_row, absorb_row_scaled, add_curl, add_curl_lossy, add_h,
+    add_h_magnetic,
+};
+use super::poles::{Dispersion, Poles, poles};
+use super::setup::Setup3;
+use super::sheet::{Sheet, padded};
+
+/// A plane of the grid across x; see `sheet` for what lies where.
+pub struct Plane<T> {
+    i: usize,
+    /// Scaled E along x, y, z.
+    pub e: [Sheet<T>; 3],
+    /// Scaled H along x, y, z.
+    pub h: [Sheet<T>; 3],
+    grades: Option<Grades<T>>,
+    /// `da`, `db` of each H component, where anything is magnetic.
+    magnetic: Option<Box<[[Sheet<T>; 3]; 2]>>,
+    absorbing: Option<Absorbing<T>>,
+    drives: Vec<PlaneDrive<T>>,
+    dispersion: Option<Dispersion<T>>,
+    pub probes: Vec<Probe>,
+}
+
+/// A source within a plane.
+struct PlaneDrive<T> {
+    j: usize,
+    axis: usize,
+    k: usize,
+    /// What is taken from E, per step.
+    series: Vec<T>,
+}
+
+/// A receiver within a plane, and what it has recorded.
+pub struct Probe {
+    /// Place in the model's list of receivers.
+    pub receiver: usize,
+    j: usize,
+    k: usize,
+    /// Ex, Ey, Ez, Hx, Hy, Hz, one sample per step, still scaled.
+    pub samples: [Vec<f64>; 6],
+}
+
+/// What all planes share.
+pub struct Shared<T> {
+    set: InstructionSet,
+    cells: [usize; 3],
+    width: usize,
+    ratio: [T; 3],
+    table: Option<Table<T>>,
+    /// Profiles of the rows within the slabs across y.
+    y: Vec<Option<(usize, Profiles<T>)>>,
+    z: Vec<Columns<T>>,
+    poles: Poles<T>,
+}
+
+impl<T: Number> Shared<T> {
+    /// Settles what all planes share.
+    pub fn new(setup: &Setup3<'_>, set: InstructionSet) -> Self {
+        let cells = setup.painted.cells;
+        let (low, high) = (setup.slabs[1].cells, setup.slabs[4].cells);
+        let slot = |j: usize| if j < low { j } else { low + (j + high).saturating_sub(cells[1]) };
+        Self {
+            set,
+            cells,
+            width: padded(cells[2]),
+            ratio: std::array::from_fn(|axis| T::of(setup.ratio(axis))),
+            table: Table::new(setup),
+            y: (0..cells[1]).map(|j| Some((slot(j), profiles(setup, 1, j)?))).collect(),
+            z: Columns::both(setup),
+            poles: poles(setup),
+        }
+    }
+
+    /// Which vector instructions are used.
+    pub fn set(&self) -> InstructionSet {
+        self.set
+    }
+}
+
+/// Room for one row of each kind, one per thread.
+pub struct Scratch<T> {
+    lookup: Lookup<T>,
+    old: [Vec<T>; 3],
+}
+
+impl<T: Number> Scratch<T> {
+    /// Room for the rows of a model.
+    pub fn new(shared: &Shared<T>) -> Self {
+        let old = std::array::from_fn(|_| vec![T::default(); shared.width]);
+        Self { lookup: Lookup::new(shared.width), old }
+    }
+}
+
+impl<T: Number> Plane<T> {
+    /// A plane beyond the outer wall: zeros that stay.
+    pub fn beyond(setup: &Setup3<'_>) -> Self {
+        let [_, ny, nz] = setup.painted.cells;
+        let sheets = || std::array::from_fn(|_| Sheet::zeros(ny, padded(nz)));
+        Self {
+            i: usize::MAX,
+            e: sheets(),
+            h: sheets(),
+            grades: None,
+            magnetic: None,
+            absorbing: None,
+            drives: vec![],
+            dispersion: None,
+            probes: vec![],
+        }
+    }
+
+    /// Allocates plane `i`.
+    pub fn new(setup: &Setup3<'_>, shared: &Shared<T>, i: usize) -> Self {
+        let [_, ny, nz] = setup.painted.cells;
+        let mut drives: Vec<_> = setup
+            .drives
+            .iter()
+            .filter(|drive| drive.node[0] == i)
+            .map(|drive| {
+                let series = drive.series.iter().map(|&v| T::of(v)).collect();
+                PlaneDrive { j: drive.node[1], axis: drive.axis, k: drive.node[2], series }
+            })
+            .collect();
+        drives.sort_by_key(|drive| drive.j);
+        let probes = setup.receivers.iter().enumerate().filter(|(_, node)| node[0] == i);
+        let probe = |(receiver, node): (usize, &[usize; 3])| Probe {
+            receiver,
+            j: node[1],
+            k: node[2],
+            samples: std::array::from_fn(|_| Vec::with_capacity(setup.iterations)),
+        };
+        let faces = |of: usize| -> [Sheet<T>; 3] {
+            std::array::from_fn(|axis| {
+                let mut sheet = Sheet::zeros(ny - 1, shared.width);
+                for j in 0..ny {
+                    let first = setup.painted.node([i, j, 0]);
+                    for (k, value) in sheet.at_mut(j, 0, nz).iter_mut().enumerate() {
+                        *value = T::of(setup.faces[setup.painted.faces[axis].get(first + k) as usize][of]);
+                    }
+                }
+                sheet
+            })
+        };
+        Self {
+            i,
+            grades: Some(Grades::new(setup, i, shared.table.is_some())),
+            magnetic: setup.magnetic().then(|| Box::new([faces(0), faces(1)])),
+            absorbing: Some(Absorbing::new(setup, i, shared.width, &shared.z)),
+            drives,
+            dispersion: Dispersion::new(setup, i),
+            probes: probes.map(probe).collect(),
+            ..Self::beyond(setup)
+        }
+    }
+
+    /// Takes the receivers' samples before a step; the first that is beyond `limit`, as axis and `(j, k)`.
+    pub fn record(&mut self, limit: T) -> Option<(usize, [usize; 2])> {
+        let mut found = None;
+        for probe in &mut self.probes {
+            for (field, samples) in probe.samples.iter_mut().enumerate() {
+                let sheet = if field < 3 { &self.e[field] } else { &self.h[field - 3] };
+                let value = sheet.at(probe.j, probe.k, 1)[0];
+                samples.push(value.double());
+                if field < 3 && value.is_beyond(limit) {
+                    found = Some((field, [probe.j, probe.k]));
+                }
+            }
+        }
+        found
+    }
+
+    /// The first edge whose scaled E is not a number or larger than `limit`, as axis and `(j, k)`.
+    pub fn find_beyond(&self, shared: &Shared<T>, limit: T) -> Option<(usize, [usize; 2])> {
+        (0..3).find_map(|axis| {
+            (0..shared.cells[1]).find_map(|j| {
+                let row = self.e[axis].at(j, 0, shared.width);
+                Some((axis, [j, row.iter().position(|v| v.is_beyond(limit))?]))
+            })
+        })
+    }
+}
+
+/// A step of one plane: H from E of this plane and the next, then E from H of this plane and the one before.
+///
+/// Rows may be stepped one after the other in place: H of a row needs E of the row and of the next, which are still those
+/// of the step before, and E of a row needs H of the row and the one before, which are stepped already.
+pub struct Step<'a, T> {
+    pub shared: &'a Shared<T>,
+    pub step: usize,
+    /// The plane before.
+    pub west: &'a Plane<T>,
+    /// The plane after.
+    pub east: &'a Plane<T>,
+}
+
+impl<T: Number> Step<'_, T> {
+    /// Runs the step.
+    #[inline(always)]
+    pub fn run(&self, plane: &mut Plane<T>, scratch: &mut Scratch<T>) {
+        let (mut next_drive, mut next_run) = (0, 0);
+        for j in 0..self.shared.cells[1] {
+            self.step_h(plane, j);
+            self.step_e(plane, j, scratch, next_run);
+            while let Some(drive) = plane.drives.get(next_drive).filter(|drive| drive.j == j) {
+                let e = plane.e[drive.axis].at_mut(j, drive.k, 1);
+                e[0] = e[0] - drive.series[self.step];
+                next_drive += 1;
+            }
+            if let Some(dispersion) = &mut plane.dispersion {
+                let n = self.shared.width;
+                let e = plane.e.each_mut().map(|sheet| sheet.at_mut(j, 0, n));
+                dispersion.relax_row(j, e, &scratch.old, &self.shared.poles, &mut next_run);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn step_h(&self, plane: &mut Plane<T>, j: usize) {
+        let n = self.shared.width;
+        let Plane { e: [ex, ey, ez], h, magnetic, absorbing, .. } = plane;
+        let [_, ey_east, ez_east] = &self.east.e;
+        // The differences of E that make the curl, along x, y, z of each component.
+        let (dx_z, dx_y) = ([ez.at(j, 0, n), ez_east.at(j, 0, n)], [ey.at(j, 0, n), ey_east.at(j, 0, n)]);
+        let (dy_x, dy_z) = ([ex.at(j, 0, n), ex.at(j + 1, 0, n)], [ez.at(j, 0, n), ez.at(j + 1, 0, n)]);
+        let (dz_y, dz_x) = ([ey.at(j, 0, n), ey.at(j, 1, n)], [ex.at(j, 0, n), ex.at(j, 1, n)]);
+        let curls = [(dz_y, dy_z), (dx_z, dz_x), (dy_x, dx_y)];
+        let [hx, hy, hz] = h.each_mut().map(|sheet| sheet.at_mut(j, 0, n));
+        match magnetic.as_deref() {
+            None => {
+                add_h(hx, curls[0].0, curls[0].1);
+                add_h(hy, curls[1].0, curls[1].1);
+                add_h(hz, curls[2].0, curls[2].1);
+            }
+            Some([da, db]) => {
+                for (axis, h) in [&mut *hx, &mut *hy, &mut *hz].into_iter().enumerate() {
+                    add_h_magnetic(h, da[axis].at(j, 0, n), db[axis].at(j, 0, n), curls[axis].0, curls[axis].1);
+                }
+            }
+        }
+        let Some(absorbing) = absorbing else { return };
+        let db = |axis: usize, k: usize, count: usize| {
+            magnetic.as_deref().map(|[_, db]: &[[Sheet<T>; 3]; 2]| db[axis].at(j, k, count))
+        };
+        let row = |h: &mut [T], axis, d, phi: &mut [T], profile| match db(axis, 0, n) {
+            None => absorb_row(h, d, phi, profile),
+            Some(db) => absorb_row_scaled(h, db, d, phi, profile),
+        };
+        if let Some((profiles, memory)) = &mut absorbing.x {
+            let [first, second] = &mut memory.h;
+            row(hy, 1, dx_z, first.at_mut(j, 0, n), profiles[2]);
+            row(hz, 2, dx_y, second.at_mut(j, 0, n), profiles[3]);
+        }
+        if let (Some((slot, profiles)), Some(memory)) = (&self.shared.y[j], &mut absorbing.y) {
+            let [first, second] = &mut memory.h;
+            row(hz, 2, dy_x, first.at_mut(*slot, 0, n), profiles[2]);
+            row(hx, 0, dy_z, second.at_mut(*slot, 0, n), profiles[3]);
+        }
+        for (columns, memory) in self.shared.z.iter().zip(&mut absorbing.z) {
+            let (k, count) = (columns.k, columns.count);
+            let column = |h: &mut [T], axis, d, phi: &mut [T], profile| match db(axis, k, count) {
+                None => absorb_columns(h, d, phi, profile),
+                Some(db) => absorb_columns_scaled(h, db, d, phi, profile),
+            };
+            let [first, second] = &mut memory.h;
+            column(&mut hx[k..][..count], 0, part(dz_y, k, count), first.at_mut(j, 0, count), columns.profile(2));
+            column(&mut hy[k..][..count], 1, part(dz_x, k, count), second.at_mut(j, 0, count), columns.profile(3));
+        }
+    }
+
+    #[inline(always)]
+    fn step_e(&self, plane: &mut Plane<T>, j: usize, scratch: &mut Scratch<T>, next_run: usize) {
+        let (n, [_, _, nz]) = (self.shared.width, self.shared.cells);
+        let Plane { i, e, h: [hx, hy, hz], grades, absorbing, dispersion, .. } = plane;
+        let Some(grades) = grades else { return };
+        let Scratch { lookup, old } = scratch;
+        if let Some(dispersion) = dispersion {
+            dispersion.keep(j, e.each_ref().map(|sheet| sheet.at(j, 0, n)), old, next_run);
+        }
+        let grades = grades.row(self.shared.set, self.shared.table.as_ref(), j, lookup);
+        let [_, hy_west, hz_west] = &self.west.h;
+        let (dx_z, dx_y) = ([hz_west.at(j, 0, n), hz.at(j, 0, n)], [hy_west.at(j, 0, n), hy.at(j, 0, n)]);
+        let (dy_z, dy_x) = ([hz.south(j, 0, n), hz.at(j, 0, n)], [hx.south(j, 0, n), hx.at(j, 0, n)]);
+        let (dz_y, dz_x) = ([hy.before(j, 0, n), hy.at(j, 0, n)], [hx.before(j, 0, n), hx.at(j, 0, n)]);
+        let curls = [(dy_z, dz_y), (dz_x, dx_z), (dx_y, dy_x)];
+        let [ex, ey, ez] = e.each_mut().map(|sheet| sheet.at_mut(j, 0, n));
+        let of = |axis: usize, ca| {
+            let (a, b) = curls[axis];
+            EdgeRow { ca, cb: grades.cb[axis], ratio: self.shared.ratio[axis], a, b }
+        };
+        match grades.ca {
+            None => {
+                add_curl(ex, of(0, &[]));
+                add_curl(ey, of(1, &[]));
+                add_curl(ez, of(2, &[]));
+            }
+            Some(ca) => {
+                add_curl_lossy(ex, of(0, ca[0]));
+                add_curl_lossy(ey, of(1, ca[1]));
+                add_curl_lossy(ez, of(2, ca[2]));
+            }
+        }
+        if let Some(absorbing) = absorbing {
+            let cb = grades.cb;
+            if let Some((profiles, memory)) = &mut absorbing.x {
+                let [first, second] = &mut memory.e;
+                absorb_row_scaled(ey, cb[1], dx_z, first.at_mut(j, 0, n), profiles[0]);
+                absorb_row_scaled(ez, cb[2], dx_y, second.at_mut(j, 0, n), profiles[1]);
+            }
+            if let (Some((slot, profiles)), Some(memory)) = (&self.shared.y[j], &mut absorbing.y) {
+                let [first, second] = &mut memory.e;
+                absorb_row_scaled(ez, cb[2], dy_x, first.at_mut(*slot, 0, n), profiles[0]);
+                absorb_row_scaled(ex, cb[0], dy_z, second.at_mut(*slot, 0, n), profiles[1]);
+            }
+            for (columns, memory) in self.shared.z.iter().zip(&mut absorbing.z) {
+                let (k, count) = (columns.k, columns.count);
+                let [first, second] = &mut memory.e;
+                let (x, y) = (&cb[0][k..][..count], &cb[1][k..][..count]);
+                let (first, second) = (first.at_mut(j, 0, count), second.at_mut(j, 0, count));
+                absorb_columns_scaled(&mut ex[k..][..count], x, part(dz_y, k, count), first, columns.profile(0));
+                absorb_columns_scaled(&mut ey[k..][..count], y, part(dz_x, k, count), second, columns.profile(1));
+            }
+        }
+        // The outer walls conduct perfectly, and nothing lies beyond them.
+        (ex[0], ey[0]) = (T::default(), T::default());
+        if nz < n {
+            ex[nz..].fill(T::default());
+            ey[nz..].fill(T::default());
+            ez[nz..].fill(T::default());
+        }
+        if *i == 0 {
+            ey.fill(T::default());
+            ez.fill(T::default());
+        }
+        if j == 0 {
+            ex.fill(T::default());
+            ez.fill(T::default());
+        }
+    }
+}
+
+/// `count` nodes from node `k` on of both sides of a difference.
+#[inline(always)]
+fn part<T>(difference: [&[T]; 2], k: usize, count: usize) -> [&[T]; 2] {
+    difference.map(|side| &side[k..][..count])
+}

@@ -1,0 +1,193 @@
+//! A three-dimensional run from a painted model to traces, and what it will cost.
+
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
+
+use super::super::predict::Prediction;
+use super::super::{Fdtd, FdtdError, Precision, Stats};
+use super::absorbing::Absorbing;
+use super::grades::Grades;
+use super::instructions::Number;
+use super::plane::{Probe, Shared};
+use super::setup::{Setup3, check_model};
+use super::sheet::{Sheet, padded};
+use super::team;
+use crate::forward::OnProgress;
+use crate::model::{
+    Grid, Model, Painted3, Resolution, TimeWindow, available_memory, check_memory, paint3,
+};
+use crate::trace::{AScan, Component, ReceiverTraces, Traces};
+use crate::units::{Metres, Seconds};
+
+impl Fdtd {
+    /// Paints a model on any grid that is not two-dimensional along z and runs it.
+    ///
+    /// # Errors
+    /// See [`FdtdError`].
+    pub(in super::super) fn solve_three(
+        &self,
+        model: &Model,
+        on_progress: OnProgress<'_>,
+    ) -> Result<(Traces, Stats), FdtdError> {
+        check_model(model)?;
+        check_memory(painting_bytes(model), available_memory())?;
+        let painted = paint3(model)?;
+        if let Some(resolution) = Resolution::of_three(model, &painted) {
+            resolution.check()?;
+        }
+        self.solve_painted_three(model, &painted, on_progress)
+    }
+
+    /// Runs a model that has been painted by [`paint3`] (and its resolution checked) already.
+    ///
+    /// # Errors
+    /// See [`FdtdError`].
+    pub fn solve_painted_three(
+        &self,
+        model: &Model,
+        painted: &Painted3,
+        on_progress: OnProgress<'_>,
+    ) -> Result<(Traces, Stats), FdtdError> {
+        let setup = Setup3::new(model, painted)?;
+        let bytes = bytes_needed(&setup, self.precision);
+        check_memory(bytes, available_memory())?;
+        let (probes, mut stats) = match self.precision {
+            Precision::Single => self.run_three::<f32>(model, &setup, on_progress)?,
+            Precision::Double => self.run_three::<f64>(model, &setup, on_progress)?,
+        };
+        stats.bytes = bytes;
+        Ok((traces(self.precision, model, &setup, probes), stats))
+    }
+
+    fn run_three<T: Number>(
+        &self,
+        model: &Model,
+        setup: &Setup3<'_>,
+        on_progress: OnProgress<'_>,
+    ) -> Result<(Vec<Probe>, Stats), FdtdError> {
+        let instruction_set = self.instruction_set.resolve()?.set();
+        let asked = self.threads.or_else(|| model.threads.and_then(NonZeroUsize::new));
+        let wanted = asked.or_else(|| std::thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
+        let threads = team::worthwhile_threads(model.grid.cell_count(), model.grid.cells[0], wanted);
+        let shared = Shared::<T>::new(setup, instruction_set);
+        let (probes, wall) = team::run(setup, &shared, threads, on_progress)?;
+        let cell_steps = model.grid.cell_count() as u64 * setup.iterations as u64;
+        let wall = Seconds(wall.as_secs_f64());
+        Ok((probes, Stats { wall, cell_steps, bytes: 0, threads, instruction_set }))
+    }
+}
+
+/// Puts what the receivers recorded into the order of the model.
+fn traces(precision: Precision, model: &Model, setup: &Setup3<'_>, mut probes: Vec<Probe>) -> Traces {
+    let dt = setup.dt;
+    let scale = setup.scale();
+    let nothing = || std::array::from_fn(|_| vec![0.0; setup.iterations]);
+    // Nothing lies beyond the last plane: what a receiver on that wall reads is zero.
+    let receivers = model.receivers.iter().enumerate().map(|(index, receiver)| {
+        let place = probes.iter().position(|probe| probe.receiver == index);
+        let samples: [Vec<f64>; 6] = place.map_or_else(nothing, |place| probes.swap_remove(place).samples);
+        let node = setup.receivers[index];
+        let name = receiver.name.clone().unwrap_or_else(|| format!("Rx({},{},{})", node[0], node[1], node[2]));
+        let position = model.grid.node_position(node).map(Metres);
+        let components = Component::FIELDS.into_iter().zip(samples).zip(scale);
+        let components = components.map(|((component, mut samples), scale)| {
+            samples.iter_mut().for_each(|v| *v *= scale);
+            AScan {
+                samples,
+                time_step: Seconds(dt),
+                first_sample: Seconds(if component.is_magnetic() { -0.5 * dt } else { 0.0 }),
+                component,
+                position: Some(position),
+                name: name.clone(),
+            }
+        });
+        ReceiverTraces { components: components.collect(), position, name: name.clone() }
+    });
+    let receivers = receivers.collect();
+    Traces {
+        title: model.title.clone(),
+        solver: format!("ballast-gpr {} fdtd, {} precision", env!("CARGO_PKG_VERSION"), precision.name()),
+        time_step: Seconds(dt),
+        iterations: setup.iterations,
+        cells: model.grid.cells,
+        spacing: model.grid.spacing.map(Metres),
+        double_precision: precision == Precision::Double,
+        receivers,
+    }
+}
+
+/// Memory while objects are painted: cells, claims and edges.
+pub fn painting_bytes(model: &Model) -> u64 {
+    model.grid.cell_count() as u64 * 12
+}
+
+/// Memory of the fields, the coefficients and the absorbing boundary of a run, bytes.
+pub fn bytes_needed(setup: &Setup3<'_>, precision: Precision) -> u64 {
+    match precision {
+        Precision::Single => bytes::<f32>(setup),
+        Precision::Double => bytes::<f64>(setup),
+    }
+}
+
+fn bytes<T: Number>(setup: &Setup3<'_>) -> u64 {
+    let [nx, ny, nz] = setup.painted.cells;
+    let width = padded(nz);
+    let fields = 6 * (nx as u64 + 2) * Sheet::<T>::bytes(ny, width);
+    let magnetic = if setup.magnetic() { 6 * nx as u64 * Sheet::<T>::bytes(ny - 1, width) } else { 0 };
+    let per_entry = setup.painted.edges_per_entry();
+    let poles: usize = setup.edges.iter().zip(per_entry).map(|(edge, count)| edge.poles.len() * count).sum();
+    let samples = setup.receivers.len() * 6 * 8 + setup.drives.len() * (8 + size_of::<T>());
+    fields
+        + magnetic
+        + Grades::<T>::bytes(setup)
+        + Absorbing::<T>::bytes(setup, width)
+        + (poles * size_of::<T>() + samples * setup.iterations) as u64
+}
+
+/// Cells of the trial run of a prediction: about as many as the outer cache holds four times over.
+const TRIAL_CELLS: usize = 2_000_000;
+
+/// Predicts memory and wall time of a three-dimensional run in single precision, from a trial run of some ten milliseconds
+/// on this machine: the model itself, cut along x where it is large, for a few steps.
+///
+/// # Errors
+/// Whatever the solver cannot do, as [`Fdtd::solve_stats`] would say it.
+pub fn predict_three(
+    model: &Model,
+    painted: &Painted3,
+    threads: Option<NonZeroUsize>,
+) -> Result<Prediction, FdtdError> {
+    let setup = Setup3::new(model, painted)?;
+    let bytes = bytes_needed(&setup, Precision::Single);
+    let [nx, ny, nz] = model.grid.cells;
+    let planes = nx.min((TRIAL_CELLS / (ny * nz)).max(4 * team::STAGES));
+    let mut cut = model.clone();
+    cut.grid = Grid { cells: [planes, ny, nz], spacing: model.grid.spacing };
+    let mut absorbing = model.absorbing_cells();
+    if planes < nx {
+        (absorbing[0], absorbing[3]) = (0, 0);
+    }
+    cut.pml_cells = Some(absorbing);
+    cut.sources.clear();
+    cut.receivers.clear();
+    // The middle of the model, whose objects are those that cost.
+    let first = (nx - planes) / 2;
+    let piece = painted.cut_x(first..first + planes);
+    let fdtd = Fdtd { threads, ..Fdtd::default() };
+    let steps = (2 * TRIAL_CELLS / (planes * ny * nz)).clamp(2 * team::STAGES, 400);
+    let mut fastest = |steps: usize| {
+        cut.time_window = TimeWindow::Iterations(steps + 1);
+        let run = |_| {
+            let run = fdtd.solve_painted_three(&cut, &piece, &|_| ControlFlow::Continue(()));
+            run.map(|(_, stats)| stats.wall.si())
+        };
+        (0..2).map(run).try_fold(f64::INFINITY, |fastest, seconds| Ok::<_, FdtdError>(seconds?.min(fastest)))
+    };
+    // The difference leaves out what a run pays once: starting threads and touching memory for the first time.
+    let (short, long) = (fastest(steps)?, fastest(3 * steps)?);
+    let (marginal, whole) = ((long - short) / (2 * steps) as f64, long / (3 * steps) as f64);
+    let per_step = if marginal > 0.2 * whole { marginal } else { whole };
+    let per_cell = per_step / (planes * ny * nz) as f64;
+    let cell_steps = model.grid.cell_count() as u64 * setup.iterations as u64;
+    Ok(Prediction { bytes, seconds: per_cell * cell_steps as f64, cell_steps })
+}

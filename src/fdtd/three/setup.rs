@@ -1,0 +1,209 @@
+//! A three-dimensional model checked and turned into numbers, before anything of its size is allocated.
+
+use super::super::FdtdError;
+use super::super::coefficients::{Edge, Slab, check_electric, edge_of};
+use super::super::setup::node_in_grid;
+use crate::model::{Axis, FaceMaterial, Model, Painted3, Source, check_absorbing_cells, check_grid, check_stability_factor};
+use crate::units::constants::{MU_0, Z0};
+
+/// The two other axes of a component, in cyclic order.
+pub const OTHERS: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
+
+/// All that the planes are built from.
+pub struct Setup3<'a> {
+    pub painted: &'a Painted3,
+    pub edges: Vec<Edge>,
+    /// `da`, `db` of each entry of the face palette.
+    pub faces: Vec<[f64; 2]>,
+    /// At x0, y0, z0, xmax, ymax, zmax.
+    pub slabs: [Slab; 6],
+    pub drives: Vec<Drive>,
+    /// Node of each receiver.
+    pub receivers: Vec<[usize; 3]>,
+    pub iterations: usize,
+    pub dt: f64,
+    pub spacing: [f64; 3],
+}
+
+/// A source at a node.
+pub struct Drive {
+    pub axis: usize,
+    pub node: [usize; 3],
+    /// What it takes from the scaled E at each step, V.
+    pub series: Vec<f64>,
+}
+
+impl<'a> Setup3<'a> {
+    /// Checks a model and settles its numbers.
+    ///
+    /// # Errors
+    /// Whatever the solver cannot do, naming it.
+    pub fn new(model: &Model, painted: &'a Painted3) -> Result<Self, FdtdError> {
+        check_model(model)?;
+        let present = painted.cells_per_material(model.materials.len());
+        for (material, _) in model.materials.iter().zip(present).filter(|(_, cells)| *cells > 0) {
+            check_electric(material)?;
+        }
+        let edges: Vec<Edge> = painted.palette.iter().map(|entry| edge_of(model, entry)).collect();
+        let dt = model.time_step();
+        let face = |face: &FaceMaterial| {
+            let (storage, loss) = (MU_0 * face.mu_r / dt, face.sigma_magnetic / 2.0);
+            [(storage - loss) / (storage + loss), MU_0 / dt / (storage + loss)]
+        };
+        let drives = model.sources.iter().enumerate();
+        let drives = drives.map(|(index, source)| drive(model, painted, &edges, index + 1, source));
+        let receivers = model.receivers.iter().enumerate();
+        let receivers = receivers.map(|(index, receiver)| {
+            node_in_grid(model, receiver.position, || {
+                receiver.name.clone().unwrap_or(format!("receiver {}", index + 1))
+            })
+        });
+        Ok(Self {
+            drives: drives.collect::<Result<_, _>>()?,
+            receivers: receivers.collect::<Result<_, _>>()?,
+            painted,
+            faces: painted.face_palette.iter().map(face).collect(),
+            slabs: slabs(model, painted),
+            edges,
+            iterations: model.iterations(),
+            dt,
+            spacing: model.grid.spacing,
+        })
+    }
+
+    /// Whether any edge conducts.
+    pub fn lossy(&self) -> bool {
+        self.edges.iter().any(Edge::is_lossy)
+    }
+
+    /// Whether anything is magnetic.
+    pub fn magnetic(&self) -> bool {
+        !self.faces.is_empty()
+    }
+
+    /// `dt d/(mu0 A)` along each axis: turns the scaled H of a component into a current along its axis, A.
+    fn current(&self) -> [f64; 3] {
+        let d = self.spacing;
+        std::array::from_fn(|axis| {
+            let [a, b] = OTHERS[axis];
+            self.dt * d[axis] / (MU_0 * d[a] * d[b])
+        })
+    }
+
+    /// Factors that turn the scaled fields into V/m and A/m: Ex, Ey, Ez, Hx, Hy, Hz.
+    pub fn scale(&self) -> [f64; 6] {
+        let (d, current) = (self.spacing, self.current());
+        std::array::from_fn(|f| if f < 3 { 1.0 / d[f] } else { current[f - 3] / d[f - 3] })
+    }
+
+    /// `ca` and `cb` of an entry of the palette for the edges along an axis.
+    pub fn coefficients(&self, axis: usize, entry: usize) -> [f64; 2] {
+        let edge = &self.edges[entry];
+        let ([a, b], d) = (OTHERS[axis], self.spacing);
+        [edge.ca, edge.source * d[axis] / (d[a] * d[b]) * self.current()[b]]
+    }
+
+    /// What the second difference of the curl is multiplied by, for the edges along an axis.
+    pub fn ratio(&self, axis: usize) -> f64 {
+        let ([a, b], current) = (OTHERS[axis], self.current());
+        current[a] / current[b]
+    }
+
+    /// A scaled field that no sound run reaches: 10⁸ times what all sources together put in at one step.
+    pub fn limit(&self) -> f64 {
+        let strongest = |drive: &Drive| drive.series.iter().fold(0.0f64, |peak, v| peak.max(v.abs()));
+        match self.drives.iter().map(strongest).sum::<f64>() {
+            0.0 => f64::from(f32::MAX),
+            sum => (1e8 * sum).min(f64::from(f32::MAX)),
+        }
+    }
+
+    /// Whether E along an axis lies on the outer wall at a node (or beyond the last edge of its axis).
+    pub fn on_wall(&self, axis: usize, node: [usize; 3]) -> bool {
+        on_wall(self.painted.cells, axis, node)
+    }
+}
+
+fn on_wall(cells: [usize; 3], axis: usize, node: [usize; 3]) -> bool {
+    (0..3).any(|a| if a == axis { node[a] >= cells[a] } else { node[a] == 0 || node[a] >= cells[a] })
+}
+
+/// The checks that need no painting.
+///
+/// # Errors
+/// A grid, a time step or absorbing cells that cannot be.
+pub fn check_model(model: &Model) -> Result<(), FdtdError> {
+    check_stability_factor(model)?;
+    check_grid(&model.grid)?;
+    Ok(check_absorbing_cells(model)?)
+}
+
+fn drive(
+    model: &Model,
+    painted: &Painted3,
+    edges: &[Edge],
+    number: usize,
+    source: &Source,
+) -> Result<Drive, FdtdError> {
+    let Source::HertzianDipole(dipole) = source;
+    let node = node_in_grid(model, dipole.position, || format!("source {number}"))?;
+    let axis = dipole.polarisation.index();
+    if on_wall(painted.cells, axis, node) {
+        return Err(FdtdError::OnWall { number, axis: dipole.polarisation, node });
+    }
+    let edge = &edges[painted.edges[axis].get(painted.node(node)) as usize];
+    if edge.source == 0.0 {
+        return Err(FdtdError::InConductor { number, node });
+    }
+    let waveforms = model.waveforms.len();
+    let waveform = model.waveforms.get(dipole.waveform);
+    let waveform = waveform.ok_or(FdtdError::NoSuchWaveform { number, waveform: dipole.waveform, waveforms })?;
+    let (dt, d) = (model.time_step(), model.grid.spacing);
+    let excitation = dipole.excitation;
+    let series = (0..model.iterations()).map(|n| {
+        let t = n as f64 * dt;
+        if t < excitation.start || excitation.stop.is_some_and(|stop| t > stop) {
+            return 0.0;
+        }
+        // A current of 1 A over one edge: dl/(dx dy dz), and once more dl to make a voltage of E.
+        let moment = d[axis] * d[axis] / (d[0] * d[1] * d[2]);
+        edge.source * waveform.value(t + 0.5 * dt - excitation.start) * moment
+    });
+    Ok(Drive { axis, node, series: series.collect() })
+}
+
+/// The absorbing slabs at x0, y0, z0, xmax, ymax, zmax.
+///
+/// `sigma_max = 0.8 * 5/(Z0 d sqrt(eps_r mu_r))`, both being the mean over the layer of absorbing cells next to the
+/// slab's entrance, rims and conductors (as `eps_r` 1) included.
+fn slabs(model: &Model, painted: &Painted3) -> [Slab; 6] {
+    let absorbing = model.absorbing_cells();
+    let n = painted.cells;
+    std::array::from_fn(|side| {
+        let (axis, cells) = (side % 3, absorbing[side]);
+        if cells == 0 {
+            return Slab::new(0, 0.0, model.time_step());
+        }
+        let layer = if side < 3 { cells - 1 } else { n[axis] - cells };
+        let [a, b] = OTHERS[axis];
+        let (mut eps_r, mut mu_r) = (0.0, 0.0);
+        for p in 0..n[a] {
+            for q in 0..n[b] {
+                let mut at = [layer; 3];
+                (at[a], at[b]) = (p, q);
+                let material = &model.materials[painted.solid[(at[0] * n[1] + at[1]) * n[2] + at[2]].index()];
+                eps_r += material.eps_r;
+                mu_r += material.mu_r;
+            }
+        }
+        let count = (n[a] * n[b]) as f64;
+        let (eps_r, mu_r) = (eps_r / count, mu_r / count);
+        let sigma_max = 0.8 * 5.0 / (Z0 * model.grid.spacing[axis] * (eps_r * mu_r).sqrt());
+        Slab::new(cells, sigma_max, model.time_step())
+    })
+}
+
+/// The axis with an index.
+pub fn axis_of(index: usize) -> Axis {
+    [Axis::X, Axis::Y, Axis::Z][index]
+}
