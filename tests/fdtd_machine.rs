@@ -176,8 +176,13 @@ fn what_cannot_be_done_is_named() {
             "1 and 0 absorbing cells leave nothing of the 1 cells along z",
             message(&|m| m.pml_cells = Some([0, 0, 1, 0, 0, 0])),
         ),
-        ("a grid of 60 x 1 x 60 cells is not two-dimensional along z", message(&|m| m.grid.cells = [60, 1, 60])),
-        ("a grid of 60 x 60 x 4 cells is not two-dimensional along z", message(&|m| m.grid.cells = [60, 60, 4])),
+        ("a grid of 60 x 1 x 1 cells of", message(&|m| m.grid.cells = [60, 1, 1])),
+        (
+            "10 and 10 absorbing cells leave nothing of the 4 cells along z",
+            message(&|m| {
+                (m.grid.cells, m.pml_cells) = ([60, 60, 4], None);
+            }),
+        ),
         ("cells of 2 mm are too coarse for this scene", message(&with(Material::dielectric("mud", 400.0, 0.0)))),
         ("the model needs", message(&|m| m.grid.cells = [4_000_000, 4_000_000, 1])),
     ] {

@@ -179,7 +179,9 @@ impl From<FdtdError> for ForwardError {
     fn from(error: FdtdError) -> Self {
         match error {
             FdtdError::Stopped => Self::Stopped,
-            FdtdError::Diverged { .. } | FdtdError::DivergedAt { .. } | FdtdError::NoSuchInstructions { .. } => Self::Solver(Box::new(error)),
+            FdtdError::Diverged { .. } | FdtdError::DivergedAt { .. } | FdtdError::NoSuchInstructions { .. } => {
+                Self::Solver(Box::new(error))
+            }
             model => Self::Model(Box::new(model)),
         }
     }

@@ -1,6 +1,6 @@
 //! Which physical effects a model calls for, read off the model and never off a flag.
 
-use super::{Material, Model, Painted};
+use super::{EdgeMaterial, Material, Model, Painted, Painted3};
 
 /// One effect: on or off, and why.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -30,7 +30,37 @@ const NUMBER: u64 = 4;
 impl Effects {
     /// Reads the effects off a model.
     pub fn of(model: &Model, painted: &Painted) -> Self {
-        let survey = Survey::of(model, painted);
+        let [nx, ny] = painted.cells_xy;
+        Self::of_survey(&Survey {
+            present: present(model, painted.cells_per_material(model.materials.len())),
+            model,
+            palette: &painted.palette,
+            per_entry: painted.edges_per_entry(),
+            edges: painted.edge_z.len(),
+            averaged: painted.averaged_edges,
+            cells: [nx, ny, 1],
+            three: false,
+            conducting_bytes: painted.edge_z.len() as u64 * NUMBER,
+        })
+    }
+
+    /// As [`Effects::of`], for any grid.
+    pub fn of_three(model: &Model, painted: &Painted3) -> Self {
+        Self::of_survey(&Survey {
+            present: present(model, painted.cells_per_material(model.materials.len())),
+            model,
+            palette: &painted.palette,
+            per_entry: painted.edges_per_entry(),
+            edges: painted.edges.iter().map(super::Indices::len).sum(),
+            averaged: painted.averaged_edges.iter().sum(),
+            cells: painted.cells,
+            three: true,
+            // Looked up in the table that also holds what takes the curl.
+            conducting_bytes: 0,
+        })
+    }
+
+    fn of_survey(survey: &Survey<'_>) -> Self {
         let list = vec![
             survey.conductivity(),
             survey.debye(),
@@ -48,29 +78,37 @@ impl Effects {
     }
 }
 
+/// The materials that any cell holds.
+fn present(model: &Model, cells: Vec<usize>) -> Vec<&Material> {
+    model.materials.iter().zip(cells).filter(|(_, cells)| *cells > 0).map(|(material, _)| material).collect()
+}
+
 /// What the effects are read off: the materials on the grid and what lies on its edges.
 struct Survey<'a> {
     model: &'a Model,
-    painted: &'a Painted,
     /// Materials on the grid.
     present: Vec<&'a Material>,
+    palette: &'a [EdgeMaterial],
     per_entry: Vec<usize>,
+    /// Edges that hold a field.
+    edges: usize,
+    averaged: usize,
+    /// Cells along x, y, z.
+    cells: [usize; 3],
+    /// Whether all six components are computed.
+    three: bool,
+    /// Memory of conductivity, bytes.
+    conducting_bytes: u64,
 }
 
-impl<'a> Survey<'a> {
-    fn of(model: &'a Model, painted: &'a Painted) -> Self {
-        let cells = painted.cells_per_material(model.materials.len());
-        let present = model.materials.iter().zip(cells).filter(|(_, cells)| *cells > 0).map(|(m, _)| m).collect();
-        Self { model, painted, present, per_entry: painted.edges_per_entry() }
-    }
-
+impl Survey<'_> {
     fn edges(&self) -> usize {
-        self.painted.edge_z.len()
+        self.edges
     }
 
     /// Edges whose entry in the palette fulfils a condition.
     fn edges_where(&self, condition: impl Fn(&super::EdgeMaterial) -> bool) -> usize {
-        self.painted.palette.iter().zip(&self.per_entry).filter(|(e, _)| condition(e)).map(|(_, count)| count).sum()
+        self.palette.iter().zip(&self.per_entry).filter(|(e, _)| condition(e)).map(|(_, count)| count).sum()
     }
 
     /// The identifiers of the materials that fulfil a condition, in backquotes, at most three.
@@ -94,14 +132,14 @@ impl<'a> Survey<'a> {
         let who = self.who(|m| m.sigma > 0.0 && !m.is_pec());
         let touched = self.edges_where(|e| e.sigma > 0.0 && e.sigma.is_finite());
         let reason = who.map(|who| format!("{who} conducts")).ok_or("nothing on the grid conducts");
-        self.effect("electric conductivity", reason, self.edges() as u64 * NUMBER, touched)
+        self.effect("electric conductivity", reason, self.conducting_bytes, touched)
     }
 
     fn debye(&self) -> Effect {
         let strong = |m: &Material| m.poles.iter().filter(|pole| pole.delta_eps != 0.0).count();
         let poles = self.present.iter().map(|m| strong(m)).max().unwrap_or(0);
         let of = |e: &super::EdgeMaterial| e.dispersive.map_or(0, |id| strong(&self.model.materials[id.index()]));
-        let memory: usize = self.painted.palette.iter().zip(&self.per_entry).map(|(e, count)| of(e) * count).sum();
+        let memory: usize = self.palette.iter().zip(&self.per_entry).map(|(e, count)| of(e) * count).sum();
         let who = self.who(|m| strong(m) > 0);
         let reason = who.map(|who| format!("the permittivity of {who} falls with frequency"));
         let reason = reason.ok_or("no material on the grid relaxes");
@@ -114,7 +152,7 @@ impl<'a> Survey<'a> {
     }
 
     fn averaging(&self) -> Effect {
-        let touched = self.painted.averaged_edges;
+        let touched = self.averaged;
         let reason = (touched > 0).then(|| format!("{touched} edges lie between materials that may be averaged"));
         self.effect("edge averaging", reason.ok_or("no edge lies between materials that may be averaged"), 0, touched)
     }
@@ -126,21 +164,35 @@ impl<'a> Survey<'a> {
     }
 
     fn absorbing(&self) -> Effect {
-        let [x0, y0, _, x1, y1, _] = self.model.absorbing_cells();
-        let [nx, ny] = self.painted.cells_xy;
-        let (across_x, across_y) = ((x0 + x1).min(nx), (y0 + y1).min(ny));
-        let cells = nx * ny - (nx - across_x) * (ny - across_y);
-        let reason = (cells > 0).then(|| format!("{x0}, {y0}, {x1}, {y1} absorbing cells at x0, y0, xmax, ymax"));
-        // One number per cell of a slab for E and one for H; the corners belong to two slabs.
-        let bytes = 2 * (across_x * ny + across_y * nx) as u64 * NUMBER;
+        let layers = self.model.absorbing_cells();
+        let across: [usize; 3] = std::array::from_fn(|axis| (layers[axis] + layers[axis + 3]).min(self.cells[axis]));
+        let all: usize = self.cells.iter().product();
+        let cells = all - (0..3).map(|axis| self.cells[axis] - across[axis]).product::<usize>();
+        let [x0, y0, z0, x1, y1, z1] = layers;
+        let reason = (cells > 0).then(|| {
+            if self.three {
+                format!("{x0}, {y0}, {z0}, {x1}, {y1}, {z1} absorbing cells at x0, y0, z0, xmax, ymax, zmax")
+            } else {
+                format!("{x0}, {y0}, {x1}, {y1} absorbing cells at x0, y0, xmax, ymax")
+            }
+        });
+        // One number per cell of a slab for each component of E and of H along it; the rims belong to two or three slabs.
+        let numbers: usize = (0..3).map(|axis| across[axis] * all / self.cells[axis]).sum();
+        let bytes = if self.three { 4 } else { 2 } * numbers as u64 * NUMBER;
         let effect = self.effect("absorbing boundary", reason.ok_or("the model asks for no absorbing cells"), bytes, 0);
-        Effect { share: cells as f64 / (nx * ny) as f64, ..effect }
+        Effect { share: cells as f64 / all as f64, ..effect }
     }
 
     fn magnetic(&self) -> Effect {
         let who = self.who(|m| m.mu_r != 1.0 || m.sigma_magnetic != 0.0);
-        let reason = who.map(|who| format!("{who} is magnetic, which the embedded solver does not know: use gprMax"));
-        self.effect("magnetic loss / permeability", reason.ok_or("nothing on the grid is magnetic"), 0, 0)
+        let reason = who.map(|who| {
+            let unknown = if self.three { "" } else { ", which the embedded solver does not know: use gprMax" };
+            format!("{who} is magnetic{unknown}")
+        });
+        // Two numbers for each component of H, where anything is magnetic.
+        let bytes = if self.three { 2 * self.edges as u64 * NUMBER } else { 0 };
+        let reason = reason.ok_or("nothing on the grid is magnetic");
+        self.effect("magnetic loss / permeability", reason, bytes, 0)
     }
 }
 

@@ -43,14 +43,17 @@ struct Canvas<'a> {
     claims: Vec<bool>,
     /// The last material that claimed the x, y and z edge at a node; empty while no cell claims.
     claimed_by: [Vec<MaterialId>; 3],
+    /// The same for the x, y and z face at a node; empty while no cell claims, and where no material is magnetic.
+    face_claimed_by: [Vec<MaterialId>; 3],
 }
 
 impl<'a> Canvas<'a> {
     fn new(model: &'a Model) -> Self {
         let n = model.grid.cells;
         let solid = vec![MaterialId::FREE_SPACE; n.iter().product()];
-        let claimed_by = [vec![], vec![], vec![]];
-        Self { grid: model.grid, materials: &model.materials, n, solid, claims: vec![], claimed_by }
+        let none = || [vec![], vec![], vec![]];
+        let (claimed_by, face_claimed_by) = (none(), none());
+        Self { grid: model.grid, materials: &model.materials, n, solid, claims: vec![], claimed_by, face_claimed_by }
     }
 
     fn object(&mut self, number: usize, object: &Object) -> Result<(), PaintError> {
@@ -126,6 +129,14 @@ impl<'a> Canvas<'a> {
             x[node(i, j + d)..][both.clone()].fill(material);
             y[node(i + d, j)..][both.clone()].fill(material);
         }
+        let [x, y, across_z] = &mut self.face_claimed_by;
+        if !x.is_empty() {
+            for d in [0, 1] {
+                x[node(i + d, j)..][z.clone()].fill(material);
+                y[node(i, j + d)..][z.clone()].fill(material);
+            }
+            across_z[node(i, j)..][both].fill(material);
+        }
     }
 
     fn begin_claims(&mut self) {
@@ -133,6 +144,9 @@ impl<'a> Canvas<'a> {
             self.claims = vec![false; self.solid.len()];
             let nodes = self.n.iter().map(|n| n + 1).product();
             self.claimed_by = std::array::from_fn(|_| vec![MaterialId::FREE_SPACE; nodes]);
+            if self.materials.iter().any(Material::is_magnetic) {
+                self.face_claimed_by = self.claimed_by.clone();
+            }
         }
     }
 
@@ -294,7 +308,8 @@ impl<'a> Canvas<'a> {
         edges
     }
 
-    /// The faces, where anything on the grid is magnetic: the harmonic mean of the two cells that share one.
+    /// The faces, where anything on the grid is magnetic: the harmonic mean of the two cells that share one, unless either
+    /// claims it.
     fn faces(&self) -> ([Indices; 3], Vec<FaceMaterial>) {
         let magnetic: Vec<bool> = self.materials.iter().map(Material::is_magnetic).collect();
         let none = || Indices::with_capacity(0);
@@ -311,9 +326,13 @@ impl<'a> Canvas<'a> {
                     let mut at = at;
                     at[axis] = if low { at[axis].saturating_sub(1) } else { at[axis] };
                     let [i, j, k] = std::array::from_fn(|a| at[a].min(self.n[a] - 1));
-                    &self.materials[self.solid[(i * ny + j) * nz + k].index()]
+                    (i * ny + j) * nz + k
                 };
-                let face = FaceMaterial::between(cell(true), cell(false));
+                let sides = [cell(true), cell(false)];
+                let claimed = !self.claims.is_empty() && sides.iter().any(|&side| self.claims[side]);
+                let [a, b] =
+                    if claimed { [self.face_claimed_by[axis][node]; 2] } else { sides.map(|side| self.solid[side]) };
+                let face = FaceMaterial::between(&self.materials[a.index()], &self.materials[b.index()]);
                 let entry = entries.iter().position(|known| *known == face).unwrap_or_else(|| {
                     entries.push(face);
                     entries.len() - 1

@@ -88,6 +88,7 @@ fn every_supported_command_lands_in_the_model() {
         Object::Cylinder { start: [0.1013, 0.2, 0.0], averaging: true, material: MaterialId::PEC, .. }
     ));
     assert!(matches!(model.objects[2], Object::Cylinder { averaging: true, material: MaterialId(2), .. }));
+    assert_eq!((model.source_steps, model.receiver_steps), ([0.0; 3], [0.02, 0.0, 0.0]));
     let notes: Vec<_> = notes.iter().map(ToString::to_string).collect();
     assert_eq!(
         notes,
@@ -95,7 +96,7 @@ fn every_supported_command_lands_in_the_model() {
             "line 19: `#rx` asks for Ez only: every component of the solver is given",
             "line 20: `#geometry_view` is not acted upon: no geometry file is written",
             "line 21: ignored, as gprMax does: a command must start in the first column",
-            "line 22: `#rx_steps` is not acted upon: one trace is computed, with the receivers where the file puts them",
+            "line 22: `#rx_steps` moves the receivers from the second trace of a B-scan on",
         ]
     );
 }
@@ -125,8 +126,8 @@ fn errors_name_the_line_and_what_to_do() {
         "FILE line 4: `#cilinder` is not a gprMax command\n\nhint: did you mean `#cylinder`?"
     );
     assert_eq!(
-        error("#sphere: 0.1 0.1 0.1 0.05 stone"),
-        "FILE line 4: `#sphere` is not supported by the embedded solver\n\nhint: `--solver gprmax` runs the file in gprMax itself"
+        error("#ellipsoid: 0.1 0.1 0.1 0.05 0.05 0.05 stone"),
+        "FILE line 4: `#ellipsoid` is not supported by the embedded solver\n\nhint: `--solver gprmax` runs the file in gprMax itself"
     );
     assert_eq!(error("#domain: 1 1 1"), "FILE line 4: `#domain` stands for the second time, first in line 1");
     assert_eq!(

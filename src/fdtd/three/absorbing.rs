@@ -140,7 +140,8 @@ impl<T: Real> Absorbing<T> {
         let of_x = (cells[0] + cells[3]) as u64 * 4 * Sheet::<T>::bytes(ny - 1, width);
         let rows = cells[1] + cells[4];
         let of_y = if rows > 0 { nx as u64 * 4 * Sheet::<T>::bytes(rows - 1, width) } else { 0 };
-        let column = |count: usize| Sheet::<T>::bytes(ny - 1, count.next_multiple_of(LANES).min(nz.next_multiple_of(LANES)));
+        let column =
+            |count: usize| Sheet::<T>::bytes(ny - 1, count.next_multiple_of(LANES).min(nz.next_multiple_of(LANES)));
         let of_z: u64 = [cells[2], cells[5]].into_iter().filter(|&count| count > 0).map(column).sum();
         of_x + of_y + nx as u64 * 4 * of_z
     }

@@ -103,11 +103,8 @@ fn look_up_avx2(table: &[f32; TABLE], index: &[u8], out: &mut [f32]) {
             let index = _mm256_cvtepu8_epi32(_mm_loadl_epi64(index.as_ptr().cast()));
             // The fourth bit of the index, moved to the sign, chooses the half.
             let upper = _mm256_castsi256_ps(_mm256_slli_epi32::<28>(index));
-            let found = _mm256_blendv_ps(
-                _mm256_permutevar8x32_ps(low, index),
-                _mm256_permutevar8x32_ps(high, index),
-                upper,
-            );
+            let found =
+                _mm256_blendv_ps(_mm256_permutevar8x32_ps(low, index), _mm256_permutevar8x32_ps(high, index), upper);
             _mm256_storeu_ps(out.as_mut_ptr(), found);
         }
     }

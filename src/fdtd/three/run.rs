@@ -13,9 +13,7 @@ use super::setup::{Setup3, check_model};
 use super::sheet::{Sheet, padded};
 use super::team;
 use crate::forward::OnProgress;
-use crate::model::{
-    Grid, Model, Painted3, Resolution, TimeWindow, available_memory, check_memory, paint3,
-};
+use crate::model::{Grid, Model, Painted3, Resolution, TimeWindow, available_memory, check_memory, paint3};
 use crate::trace::{AScan, Component, ReceiverTraces, Traces};
 use crate::units::{Metres, Seconds};
 

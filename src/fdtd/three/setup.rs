@@ -3,7 +3,9 @@
 use super::super::FdtdError;
 use super::super::coefficients::{Edge, Slab, check_electric, edge_of};
 use super::super::setup::node_in_grid;
-use crate::model::{Axis, FaceMaterial, Model, Painted3, Source, check_absorbing_cells, check_grid, check_stability_factor};
+use crate::model::{
+    Axis, FaceMaterial, Model, Painted3, Source, check_absorbing_cells, check_grid, check_stability_factor,
+};
 use crate::units::constants::{MU_0, Z0};
 
 /// The two other axes of a component, in cyclic order.

@@ -68,6 +68,11 @@ pub fn read_input(path: &Path) -> Result<Input, InFileError> {
             notes.push(Note { line: command.line, text: format!("`#{}` is not acted upon: {why}", command.name) });
         }
     }
+    for command in commands.iter().filter(|command| ["src_steps", "rx_steps"].contains(&command.name)) {
+        let what = if command.name == "src_steps" { "sources" } else { "receivers" };
+        let text = format!("`#{}` moves the {what} from the second trace of a B-scan on", command.name);
+        notes.push(Note { line: command.line, text });
+    }
     notes.sort_by_key(|note| note.line);
     Ok(Input { model, notes })
 }
