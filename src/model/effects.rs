@@ -221,6 +221,26 @@ mod tests {
         assert!(effects.list.iter().filter(|effect| !effect.on).all(|effect| effect.bytes == 0 && effect.share == 0.0));
     }
 
+    /// In three dimensions: 40 x 30 x 25 cells less the 20 x 10 x 5 inside absorb, four numbers for each cell of a slab.
+    #[test]
+    fn three_dimensions_have_their_own_counts() {
+        let grid = Grid { cells: [40, 30, 25], spacing: [0.002; 3] };
+        let mut model = Model::new("", grid, TimeWindow::Iterations(1));
+        let stone = model.add_material(Material { mu_r: 1.2, ..Material::dielectric("ore", 6.0, 0.01) });
+        model.objects.push(Object::Sphere {
+            centre: [0.04, 0.03, 0.024],
+            radius: 0.01,
+            material: stone,
+            averaging: true,
+        });
+        let effects = Effects::of_three(&model, &crate::model::paint3(&model).unwrap());
+        let absorbing = effects.named("absorbing").unwrap();
+        assert_eq!(absorbing.share, 1.0 - 1000.0 / 30_000.0);
+        assert_eq!(absorbing.bytes, 4 * 4 * (20 * 30 * 25 + 20 * 40 * 25 + 20 * 40 * 30));
+        assert_eq!(effects.named("magnetic").unwrap().reason, "`ore` is magnetic");
+        assert!(effects.named("edge averaging").unwrap().on && effects.named("electric").unwrap().on);
+    }
+
     #[test]
     fn each_effect_names_what_calls_for_it() {
         let mut model = model();

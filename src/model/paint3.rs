@@ -344,3 +344,100 @@ impl<'a> Canvas<'a> {
         (faces, entries)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{DebyePole, TimeWindow, paint};
+    use proptest::prelude::*;
+
+    fn model(cells: [usize; 3]) -> Model {
+        Model::new("", Grid { cells, spacing: [0.002; 3] }, TimeWindow::Iterations(1))
+    }
+
+    /// The cells whose centres lie within 3.3 cells of a node, counted by hand in octants of 3 x 3 x 3: with half-integer
+    /// offsets, `a² + b² + c² <= 10.89` holds for 19 of 27 (not for 2.5 with 2.5, 1.5 and up).
+    #[test]
+    fn a_sphere_fills_the_cells_whose_centres_it_holds() {
+        let mut model = model([12, 11, 10]);
+        let stone = model.add_material(Material::dielectric("stone", 6.0, 0.0));
+        let by_hand = (0..27)
+            .filter(|n| [n % 3, n / 3 % 3, n / 9].iter().map(|&c| (f64::from(c) + 0.5).powi(2)).sum::<f64>() <= 10.89)
+            .count();
+        // The centre, 0.4 of a cell off its node, snaps to it.
+        let centre = [0.0128, 0.0092, 0.0108];
+        model.objects.push(Object::Sphere { centre, radius: 0.0066, material: stone, averaging: true });
+        let painted = paint3(&model).unwrap();
+        assert_eq!(painted.cells_per_material(3)[2], 8 * by_hand);
+        assert_eq!(painted.solid[(6 * 11 + 5) * 10 + 5], stone);
+        // Its own edges hold stone, those far away free space, those on its surface the mean.
+        assert_eq!(painted.edge(0, [6, 5, 5]).eps_r, 6.0);
+        assert_eq!(painted.edge(2, [0, 0, 0]).eps_r, 1.0);
+        assert!(painted.averaged_edges.iter().all(|&count| count > 0));
+    }
+
+    /// A claimed cell gives its material to its twelve edges and to no other.
+    #[test]
+    fn a_claimed_cell_gives_its_material_to_twelve_edges() {
+        let mut model = model([5, 5, 5]);
+        let stone = model.add_material(Material::dielectric("stone", 6.0, 0.0));
+        let (lower, upper) = ([0.004; 3], [0.006; 3]);
+        model.objects.push(Object::Box { lower, upper, material: stone, averaging: false });
+        let painted = paint3(&model).unwrap();
+        let of_stone = painted.palette.iter().position(|edge| edge.eps_r == 6.0).unwrap();
+        assert_eq!((painted.edges_per_entry()[of_stone], painted.averaged_edges), (12, [0; 3]));
+        model.objects[0] = Object::Box { lower, upper, material: stone, averaging: true };
+        // With averaging each of the twelve takes a quarter of it: 1 + 5/4.
+        let painted = paint3(&model).unwrap();
+        let mean = painted.palette.iter().position(|edge| edge.eps_r == 2.25).unwrap();
+        assert_eq!((painted.edges_per_entry()[mean], painted.averaged_edges), (12, [4; 3]));
+    }
+
+    /// Only magnetic grids have faces; one between permeabilities 1 and 3 has 1.5.
+    #[test]
+    fn faces_take_the_harmonic_mean() {
+        let mut model = model([5, 5, 5]);
+        let ore = model.add_material(Material { mu_r: 3.0, ..Material::dielectric("ore", 1.0, 0.0) });
+        assert!(paint3(&model).unwrap().faces[0].is_empty());
+        let (lower, upper) = ([0.004; 3], [0.006; 3]);
+        model.objects.push(Object::Box { lower, upper, material: ore, averaging: true });
+        let painted = paint3(&model).unwrap();
+        let face = |axis: usize, node| painted.face_palette[painted.faces[axis].get(painted.node(node)) as usize].mu_r;
+        assert_eq!(
+            [face(0, [2, 2, 2]), face(1, [2, 3, 2]), face(2, [2, 2, 3]), face(0, [1, 2, 2])],
+            [1.5, 1.5, 1.5, 1.0]
+        );
+    }
+
+    proptest! {
+        /// A model of one layer has the same cells and z edges in both ways of painting.
+        #[test]
+        fn a_plane_is_painted_alike_in_both_ways(
+            objects in prop::collection::vec((0..3usize, prop::array::uniform4(0.0..0.04f64), 2..6u16, any::<bool>()), 1..6),
+        ) {
+            let mut model = model([17, 13, 1]);
+            model.add_material(Material::dielectric("stone", 6.0, 0.01));
+            model.add_material(Material::dielectric("sand", 3.0, 0.0));
+            let pole = DebyePole { delta_eps: 2.0, tau: 1e-11 };
+            model.add_material(Material { poles: vec![pole], averagable: false, ..Material::dielectric("wet", 4.0, 0.0) });
+            model.add_material(Material { id: "rail".into(), ..Material::pec() });
+            for (kind, [x, y, a, b], material, averaging) in objects {
+                let (material, reach) = (MaterialId(material), [x + 0.003 + a, y + 0.003 + b, 0.002]);
+                model.objects.push(match kind {
+                    0 => Object::Box { lower: [x.min(0.03), y.min(0.02), 0.0], upper: reach, material, averaging },
+                    _ => {
+                        let (start, end) = ([x.min(0.03), y.min(0.02), 0.0], [x.min(0.03), y.min(0.02), 0.002]);
+                        Object::Cylinder { start, end, radius: 0.002 + a / 4.0, material, averaging }
+                    }
+                });
+            }
+            let (plane, layer) = (paint(&model).unwrap(), paint3(&model).unwrap().into_plane());
+            prop_assert_eq!((&plane.solid, plane.averaged_edges), (&layer.solid, layer.averaged_edges));
+            for i in 0..=17 {
+                for j in 0..=13 {
+                    prop_assert_eq!(plane.edge(i, j), layer.edge(i, j));
+                }
+            }
+        }
+    }
+}

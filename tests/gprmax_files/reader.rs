@@ -101,6 +101,22 @@ fn every_supported_command_lands_in_the_model() {
     );
 }
 
+/// A ball, and receivers on a lattice with a node at both corners, z fastest.
+#[test]
+fn three_dimensional_scenes_are_read() {
+    let text = "#domain: 0.1 0.1 0.08\n#dx_dy_dz: 0.002 0.002 0.002\n#time_window: 300\n#material: 6 0.001 1 0 stone\n\
+        #sphere: 0.0513 0.04 0.03 0.0123 stone n\n#src_steps: 0.01 0 0\n\
+        #rx_array: 0.02 0.03 0.04 0.04 0.03 0.06 0.01 0 0.02\n";
+    let model = read(text).unwrap().model;
+    assert_eq!(model.grid.cells, [50, 50, 40]);
+    let stone = MaterialId(2);
+    let ball = Object::Sphere { centre: [0.0513, 0.04, 0.03], radius: 0.0123, material: stone, averaging: false };
+    assert_eq!(model.objects, [ball]);
+    let nodes: Vec<_> = model.receivers.iter().map(|r| [0, 1, 2].map(|axis| model.grid.node(axis, r.position[axis]))).collect();
+    assert_eq!(nodes, [[10, 15, 20], [10, 15, 30], [15, 15, 20], [15, 15, 30], [20, 15, 20], [20, 15, 30]]);
+    assert_eq!(model.source_steps, [0.01, 0.0, 0.0]);
+}
+
 /// The voxels of case 11: -1 leaves a cell, 0 is stone, 1 is fines; counts by h5py.
 #[test]
 fn voxels_bring_their_materials() {
