@@ -5,7 +5,7 @@ use super::absorbing::{Absorbing, Columns, Profiles, profiles};
 use super::grades::{Grades, Lookup, Table};
 use super::instructions::Number;
 use super::kernel::{
-    EdgeRow, absorb_columns, absorb_columns_scaled, absorb_row, absorb_row_scaled, add_curl, add_curl_lossy, add_h,
+    ColumnProfile, EdgeRow, RowProfile, absorb_columns, absorb_columns_scaled, absorb_row, absorb_row_scaled, add_curl, add_curl_lossy, add_h,
     add_h_magnetic,
 };
 use super::poles::{Dispersion, Poles, poles};
@@ -215,8 +215,7 @@ impl<T: Number> Step<'_, T> {
             }
             if let Some(dispersion) = &mut plane.dispersion {
                 let n = self.shared.width;
-                let e = plane.e.each_mut().map(|sheet| sheet.at_mut(j, 0, n));
-                dispersion.relax_row(j, e, &scratch.old, &self.shared.poles, &mut next_run);
+                dispersion.relax_row(j, rows_mut(&mut plane.e, j, n), &scratch.old, &self.shared.poles, &mut next_run);
             }
         }
     }
@@ -231,7 +230,7 @@ impl<T: Number> Step<'_, T> {
         let (dy_x, dy_z) = ([ex.at(j, 0, n), ex.at(j + 1, 0, n)], [ez.at(j, 0, n), ez.at(j + 1, 0, n)]);
         let (dz_y, dz_x) = ([ey.at(j, 0, n), ey.at(j, 1, n)], [ex.at(j, 0, n), ex.at(j, 1, n)]);
         let curls = [(dz_y, dy_z), (dx_z, dz_x), (dy_x, dx_y)];
-        let [hx, hy, hz] = h.each_mut().map(|sheet| sheet.at_mut(j, 0, n));
+        let [hx, hy, hz] = rows_mut(h, j, n);
         match magnetic.as_deref() {
             None => {
                 add_h(hx, curls[0].0, curls[0].1);
@@ -245,32 +244,24 @@ impl<T: Number> Step<'_, T> {
             }
         }
         let Some(absorbing) = absorbing else { return };
-        let db = |axis: usize, k: usize, count: usize| {
-            magnetic.as_deref().map(|[_, db]: &[[Sheet<T>; 3]; 2]| db[axis].at(j, k, count))
-        };
-        let row = |h: &mut [T], axis, d, phi: &mut [T], profile| match db(axis, 0, n) {
-            None => absorb_row(h, d, phi, profile),
-            Some(db) => absorb_row_scaled(h, db, d, phi, profile),
-        };
+        let db = magnetic.as_deref().map(|[_, db]| db);
         if let Some((profiles, memory)) = &mut absorbing.x {
             let [first, second] = &mut memory.h;
-            row(hy, 1, dx_z, first.at_mut(j, 0, n), profiles[2]);
-            row(hz, 2, dx_y, second.at_mut(j, 0, n), profiles[3]);
+            absorb_h(hy, db.map(|db| db[1].at(j, 0, n)), dx_z, first.at_mut(j, 0, n), profiles[2]);
+            absorb_h(hz, db.map(|db| db[2].at(j, 0, n)), dx_y, second.at_mut(j, 0, n), profiles[3]);
         }
         if let (Some((slot, profiles)), Some(memory)) = (&self.shared.y[j], &mut absorbing.y) {
             let [first, second] = &mut memory.h;
-            row(hz, 2, dy_x, first.at_mut(*slot, 0, n), profiles[2]);
-            row(hx, 0, dy_z, second.at_mut(*slot, 0, n), profiles[3]);
+            absorb_h(hz, db.map(|db| db[2].at(j, 0, n)), dy_x, first.at_mut(*slot, 0, n), profiles[2]);
+            absorb_h(hx, db.map(|db| db[0].at(j, 0, n)), dy_z, second.at_mut(*slot, 0, n), profiles[3]);
         }
         for (columns, memory) in self.shared.z.iter().zip(&mut absorbing.z) {
             let (k, count) = (columns.k, columns.count);
-            let column = |h: &mut [T], axis, d, phi: &mut [T], profile| match db(axis, k, count) {
-                None => absorb_columns(h, d, phi, profile),
-                Some(db) => absorb_columns_scaled(h, db, d, phi, profile),
-            };
             let [first, second] = &mut memory.h;
-            column(&mut hx[k..][..count], 0, part(dz_y, k, count), first.at_mut(j, 0, count), columns.profile(2));
-            column(&mut hy[k..][..count], 1, part(dz_x, k, count), second.at_mut(j, 0, count), columns.profile(3));
+            let (x, y) = (db.map(|db| db[0].at(j, k, count)), db.map(|db| db[1].at(j, k, count)));
+            let (first, second) = (first.at_mut(j, 0, count), second.at_mut(j, 0, count));
+            absorb_h_end(&mut hx[k..][..count], x, part(dz_y, k, count), first, columns.profile(2));
+            absorb_h_end(&mut hy[k..][..count], y, part(dz_x, k, count), second, columns.profile(3));
         }
     }
 
@@ -281,7 +272,8 @@ impl<T: Number> Step<'_, T> {
         let Some(grades) = grades else { return };
         let Scratch { lookup, old } = scratch;
         if let Some(dispersion) = dispersion {
-            dispersion.keep(j, e.each_ref().map(|sheet| sheet.at(j, 0, n)), old, next_run);
+            let [ex, ey, ez] = &*e;
+            dispersion.keep(j, [ex.at(j, 0, n), ey.at(j, 0, n), ez.at(j, 0, n)], old, next_run);
         }
         let grades = grades.row(self.shared.set, self.shared.table.as_ref(), j, lookup);
         let [_, hy_west, hz_west] = &self.west.h;
@@ -289,7 +281,7 @@ impl<T: Number> Step<'_, T> {
         let (dy_z, dy_x) = ([hz.south(j, 0, n), hz.at(j, 0, n)], [hx.south(j, 0, n), hx.at(j, 0, n)]);
         let (dz_y, dz_x) = ([hy.before(j, 0, n), hy.at(j, 0, n)], [hx.before(j, 0, n), hx.at(j, 0, n)]);
         let curls = [(dy_z, dz_y), (dz_x, dx_z), (dx_y, dy_x)];
-        let [ex, ey, ez] = e.each_mut().map(|sheet| sheet.at_mut(j, 0, n));
+        let [ex, ey, ez] = rows_mut(e, j, n);
         let of = |axis: usize, ca| {
             let (a, b) = curls[axis];
             EdgeRow { ca, cb: grades.cb[axis], ratio: self.shared.ratio[axis], a, b }
@@ -345,8 +337,33 @@ impl<T: Number> Step<'_, T> {
     }
 }
 
+/// Row `j` of three sheets. (A closure here would be compiled without the wide instructions of its caller.)
+#[inline(always)]
+fn rows_mut<T: Number>(sheets: &mut [Sheet<T>; 3], j: usize, n: usize) -> [&mut [T]; 3] {
+    let [x, y, z] = sheets;
+    [x.at_mut(j, 0, n), y.at_mut(j, 0, n), z.at_mut(j, 0, n)]
+}
+
+/// Corrects a row of H; `db` where anything is magnetic.
+#[inline(always)]
+fn absorb_h<T: Number>(h: &mut [T], db: Option<&[T]>, d: [&[T]; 2], phi: &mut [T], profile: RowProfile<T>) {
+    match db {
+        None => absorb_row(h, d, phi, profile),
+        Some(db) => absorb_row_scaled(h, db, d, phi, profile),
+    }
+}
+
+/// Corrects one end of a row of H; `db` where anything is magnetic.
+#[inline(always)]
+fn absorb_h_end<T: Number>(h: &mut [T], db: Option<&[T]>, d: [&[T]; 2], phi: &mut [T], profile: ColumnProfile<'_, T>) {
+    match db {
+        None => absorb_columns(h, d, phi, profile),
+        Some(db) => absorb_columns_scaled(h, db, d, phi, profile),
+    }
+}
+
 /// `count` nodes from node `k` on of both sides of a difference.
 #[inline(always)]
-fn part<T>(difference: [&[T]; 2], k: usize, count: usize) -> [&[T]; 2] {
-    difference.map(|side| &side[k..][..count])
+fn part<T>([a, b]: [&[T]; 2], k: usize, count: usize) -> [&[T]; 2] {
+    [&a[k..][..count], &b[k..][..count]]
 }

@@ -6,7 +6,7 @@ use super::super::super::real::Real;
 #[inline(always)]
 pub fn add_h<T: Real>(h: &mut [T], a: [&[T]; 2], b: [&[T]; 2]) {
     let n = h.len();
-    let ([a0, a1], [b0, b1]) = (a.map(|a| &a[..n]), b.map(|b| &b[..n]));
+    let (a0, a1, b0, b1) = (&a[0][..n], &a[1][..n], &b[0][..n], &b[1][..n]);
     for k in 0..n {
         h[k] = h[k] + ((a1[k] - a0[k]) - (b1[k] - b0[k]));
     }
@@ -16,7 +16,7 @@ pub fn add_h<T: Real>(h: &mut [T], a: [&[T]; 2], b: [&[T]; 2]) {
 #[inline(always)]
 pub fn add_h_magnetic<T: Real>(h: &mut [T], da: &[T], db: &[T], a: [&[T]; 2], b: [&[T]; 2]) {
     let n = h.len();
-    let ([a0, a1], [b0, b1]) = (a.map(|a| &a[..n]), b.map(|b| &b[..n]));
+    let (a0, a1, b0, b1) = (&a[0][..n], &a[1][..n], &b[0][..n], &b[1][..n]);
     let (da, db) = (&da[..n], &db[..n]);
     for k in 0..n {
         h[k] = da[k] * h[k] + db[k] * ((a1[k] - a0[k]) - (b1[k] - b0[k]));
@@ -42,7 +42,7 @@ pub struct EdgeRow<'a, T> {
 #[inline(always)]
 pub fn add_curl<T: Real>(e: &mut [T], row: EdgeRow<'_, T>) {
     let n = e.len();
-    let ([a0, a1], [b0, b1]) = (row.a.map(|a| &a[..n]), row.b.map(|b| &b[..n]));
+    let (a0, a1, b0, b1) = (&row.a[0][..n], &row.a[1][..n], &row.b[0][..n], &row.b[1][..n]);
     let (cb, ratio) = (&row.cb[..n], row.ratio);
     for k in 0..n {
         e[k] = e[k] + cb[k] * ((a1[k] - a0[k]) - ratio * (b1[k] - b0[k]));
@@ -53,7 +53,7 @@ pub fn add_curl<T: Real>(e: &mut [T], row: EdgeRow<'_, T>) {
 #[inline(always)]
 pub fn add_curl_lossy<T: Real>(e: &mut [T], row: EdgeRow<'_, T>) {
     let n = e.len();
-    let ([a0, a1], [b0, b1]) = (row.a.map(|a| &a[..n]), row.b.map(|b| &b[..n]));
+    let (a0, a1, b0, b1) = (&row.a[0][..n], &row.a[1][..n], &row.b[0][..n], &row.b[1][..n]);
     let (ca, cb, ratio) = (&row.ca[..n], &row.cb[..n], row.ratio);
     for k in 0..n {
         e[k] = ca[k] * e[k] + cb[k] * ((a1[k] - a0[k]) - ratio * (b1[k] - b0[k]));
