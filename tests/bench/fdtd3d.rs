@@ -57,7 +57,7 @@ fn main() {
     println!("{:<10}{:<11}{:<10}{:>9}{:>10}", "cells", "stone", "set", "1 thread", "2 threads");
     for side in if small { &[128][..] } else { &[128, 200] } {
         for (name, spheres, sigma) in [("none", 0, 0.0), ("lossless", 500, 0.0), ("lossy", 500, 0.001)] {
-            let steps = 60_000_000 / (side * side * side) + 4;
+            let steps = 300_000_000 / (side * side * side) + 4;
             let model = bed([*side; 3], steps, spheres, sigma);
             let Ok(painted) = paint3(&model) else { continue };
             for set in [InstructionSet::Avx512, InstructionSet::Avx2, InstructionSet::Scalar] {

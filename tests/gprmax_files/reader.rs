@@ -112,7 +112,8 @@ fn three_dimensional_scenes_are_read() {
     let stone = MaterialId(2);
     let ball = Object::Sphere { centre: [0.0513, 0.04, 0.03], radius: 0.0123, material: stone, averaging: false };
     assert_eq!(model.objects, [ball]);
-    let nodes: Vec<_> = model.receivers.iter().map(|r| [0, 1, 2].map(|axis| model.grid.node(axis, r.position[axis]))).collect();
+    let nodes: Vec<_> =
+        model.receivers.iter().map(|r| [0, 1, 2].map(|axis| model.grid.node(axis, r.position[axis]))).collect();
     assert_eq!(nodes, [[10, 15, 20], [10, 15, 30], [15, 15, 20], [15, 15, 30], [20, 15, 20], [20, 15, 30]]);
     assert_eq!(model.source_steps, [0.01, 0.0, 0.0]);
 }

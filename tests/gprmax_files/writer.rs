@@ -272,9 +272,8 @@ fn object(materials: u16, spacing: [f64; 3], cells: (usize, usize)) -> impl Stra
         (point(), point(), 1e-6..0.1f64, id(), any::<bool>()).prop_map(|(start, end, radius, material, averaging)| {
             Object::Cylinder { start, end, radius, material, averaging }
         });
-    let sphere = (point(), 1e-6..0.1f64, id(), any::<bool>()).prop_map(|(centre, radius, material, averaging)| {
-        Object::Sphere { centre, radius, material, averaging }
-    });
+    let sphere = (point(), 1e-6..0.1f64, id(), any::<bool>())
+        .prop_map(|(centre, radius, material, averaging)| Object::Sphere { centre, radius, material, averaging });
     let cells = (1usize..6, 1usize..6)
         .prop_flat_map(move |(nx, ny)| (Just([nx, ny, 1]), prop::collection::vec(prop::option::of(id()), nx * ny)));
     let voxels = (cells, any::<bool>(), 0..9u8).prop_map(move |((shape, cells), averaging, node)| {

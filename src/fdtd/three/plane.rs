@@ -5,8 +5,8 @@ use super::absorbing::{Absorbing, Columns, Profiles, profiles};
 use super::grades::{Grades, Lookup, Table};
 use super::instructions::Number;
 use super::kernel::{
-    ColumnProfile, EdgeRow, RowProfile, absorb_columns, absorb_columns_scaled, absorb_row, absorb_row_scaled, add_curl, add_curl_lossy, add_h,
-    add_h_magnetic,
+    ColumnProfile, EdgeRow, RowProfile, absorb_columns, absorb_columns_scaled, absorb_row, absorb_row_scaled, add_curl,
+    add_curl_lossy, add_h, add_h_magnetic,
 };
 use super::poles::{Dispersion, Poles, poles};
 use super::setup::Setup3;
