@@ -122,6 +122,27 @@ impl Model {
 mod tests {
     use super::*;
 
+    /// Case `15_bscan5` of gprMax 4.0.1, `-n 5`, steps of 40 mm: the source of the fifth run stands at node 170, the receiver
+    /// at node 190 (90 and 110, moved by four times 20 nodes).
+    #[test]
+    fn traces_of_a_b_scan_move_by_whole_cells() {
+        use crate::model::{Axis, Excitation, HertzianDipole};
+        let grid = Grid { cells: [300, 200, 1], spacing: [0.002; 3] };
+        let mut model = Model::new("", grid, TimeWindow::Iterations(1));
+        let excitation = Excitation { start: 0.0, stop: None };
+        let position = [0.18, 0.3, 0.0];
+        let dipole = HertzianDipole { polarisation: Axis::Z, position, waveform: 0, excitation };
+        model.sources.push(Source::HertzianDipole(dipole));
+        model.receivers.push(Receiver { position: [0.22, 0.3, 0.0], name: None });
+        (model.source_steps, model.receiver_steps) = ([0.04, 0.0, 0.0], [0.04, 0.0, 0.0]);
+        assert_eq!(model.at_trace(0), model);
+        let fifth = model.at_trace(4);
+        let Source::HertzianDipole(dipole) = &fifth.sources[0];
+        let node = |x: f64| grid.node(0, x);
+        assert_eq!((node(dipole.position[0]), node(fifth.receivers[0].position[0])), (170, 190));
+        assert_eq!(dipole.position[1], 0.3);
+    }
+
     /// Iterations that gprMax 4.0.1 reports for its window and step (`#time_window: 4e-9`, 2 mm, 2-D).
     #[test]
     fn iterations_are_those_of_gprmax() {
