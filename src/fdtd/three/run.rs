@@ -187,5 +187,5 @@ pub fn predict_three(
     let per_step = if marginal > 0.2 * whole { marginal } else { whole };
     let per_cell = per_step / (planes * ny * nz) as f64;
     let cell_steps = model.grid.cell_count() as u64 * setup.iterations as u64;
-    Ok(Prediction { bytes, seconds: per_cell * cell_steps as f64, cell_steps })
+    Ok(Prediction { bytes, seconds: per_cell * cell_steps as f64, cell_steps, share_saved: 0.0 })
 }

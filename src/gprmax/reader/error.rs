@@ -204,6 +204,16 @@ pub enum Problem {
         /// Extents, m.
         domain: [f64; 3],
     },
+    /// An array of receivers that runs backwards.
+    #[error("the first corner of `#rx_array` lies beyond its second along {axis}: {lower} m and {upper} m")]
+    ArrayCorners {
+        /// Axis.
+        axis: &'static str,
+        /// First corner, m.
+        lower: f64,
+        /// Second corner, m.
+        upper: f64,
+    },
     /// A box without a cell.
     #[error("`#box` fills no cell along {axis}: it reaches from {lower} m to {upper} m")]
     NoCells {

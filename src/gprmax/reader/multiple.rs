@@ -174,7 +174,7 @@ fn receiver_array(model: &mut Model, command: &Command<'_>) -> Result<(), Proble
     for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
         let (low, high) = (grid.node(axis, lower[axis]), grid.node(axis, upper[axis]));
         if low > high {
-            return Err(Problem::Corners { axis: name, lower: lower[axis], upper: upper[axis] });
+            return Err(Problem::ArrayCorners { axis: name, lower: lower[axis], upper: upper[axis] });
         }
         let step = grid.node(axis, steps[axis]);
         p.check("the step", steps[axis], steps[axis] >= 0.0, "0 or more")?;
