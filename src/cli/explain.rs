@@ -8,9 +8,9 @@ use clap::Args;
 use crate::cli::error::CliError;
 use crate::cli::scene_args::SceneArgs;
 use crate::cli::table::Report;
-use crate::fdtd;
+use crate::fdtd::{self, Prediction};
 use crate::gprmax;
-use crate::model::{self, Effects, Model};
+use crate::model::{self, Effects, Model, Resolution};
 use crate::raster;
 use crate::scene::{self, EquivalentStone, Scene, SceneSpec};
 use crate::units::Metres;
@@ -56,10 +56,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), CliError> {
         let model = raster::build_model(&scene)?;
         (Some(scene), model)
     };
-    let painted = model::paint(&model)?;
-    let effects = Effects::of(&model, &painted);
-    let prediction = fdtd::predict(&model, &painted, args.threads)?;
-    let resolution = model::Resolution::of(&model, &painted);
+    let Forecast { effects, prediction, resolution } = Forecast::of(&model, args.threads)?;
     if args.json {
         let value = serde_json::json!({
             "bulk_permittivity": scene.as_ref().map(|scene| &scene.bulk),
@@ -117,10 +114,37 @@ pub fn run(args: &ExplainArgs) -> Result<(), CliError> {
         prediction.cell_steps as f64,
         100.0 * prediction.share_saved
     );
-    if let Some(resolution) = resolution.filter(model::Resolution::is_coarse) {
+    if let Some(resolution) = resolution.filter(Resolution::is_coarse) {
         eprintln!("warning: {resolution}");
     }
     Ok(())
+}
+
+/// What a run will be like.
+struct Forecast {
+    effects: Effects,
+    prediction: Prediction,
+    resolution: Option<Resolution>,
+}
+
+impl Forecast {
+    /// Paints a model, two- or three-dimensional, and reads off it what a run will be like.
+    fn of(model: &Model, threads: Option<NonZeroUsize>) -> Result<Self, CliError> {
+        if model.grid.invariant_axis() == Some(2) {
+            let painted = model::paint(model)?;
+            return Ok(Self {
+                effects: Effects::of(model, &painted),
+                prediction: fdtd::predict(model, &painted, threads)?,
+                resolution: Resolution::of(model, &painted),
+            });
+        }
+        let painted = model::paint3(model)?;
+        Ok(Self {
+            effects: Effects::of_three(model, &painted),
+            prediction: fdtd::predict_three(model, &painted, threads)?,
+            resolution: Resolution::of_three(model, &painted),
+        })
+    }
 }
 
 /// What of the scene itself is in the model, and why: these change materials, not the solver.

@@ -45,7 +45,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let outcomes = (0..21).map(|seed| pack(&dense, seed)).collect::<Result<Vec<_>, _>>()?;
     let positioning = |o: &RsaOutcome| o.seconds_positioning.si();
-    println!("the same from 56.6 %, near the jam: median of 21 seeds {:.2} ms\n", median(outcomes.iter().map(positioning).collect()) * 1e3);
+    println!(
+        "the same from 56.6 %, near the jam: median of 21 seeds {:.2} ms\n",
+        median(outcomes.iter().map(positioning).collect()) * 1e3
+    );
     println!("{:>8} {:>14} {:>12} {:>16}", "stones", "positioning s", "compaction s", "us per stone");
     let (mut positionings, mut compactions) = (Vec::new(), Vec::new());
     for (stones, runs) in [(1e3, 21), (1e4, 7), (1e5, 3), (3e5, 1)] {
@@ -58,6 +61,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         positionings.push((count, place));
         compactions.push((count, settle));
     }
-    println!("\nexponent in the number of stones: positioning {:.2}, compaction {:.2}", slope(&positionings), slope(&compactions));
+    println!(
+        "\nexponent in the number of stones: positioning {:.2}, compaction {:.2}",
+        slope(&positionings),
+        slope(&compactions)
+    );
     Ok(())
 }
