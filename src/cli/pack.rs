@@ -182,13 +182,13 @@ fn packing_figure(packing: &Packing, outcome: Option<&RsaOutcome>) -> PackingFig
 /// Input and output sieve curves, as in the paper's Fig. 8, with the standard's band where there is one.
 fn grading_chart(grading: &Grading, rows: &[GradingRow]) -> Chart {
     let mm = |row: &GradingRow| 1e3 * row.sieve.si();
-    let mut chart =
-        Chart::new("Sieve curve", Axis::log10("sieve", "mm"), Axis::linear("passing", "%").between(0.0, 100.0))
-            .with(Series::line("input", rows.iter().map(|row| (mm(row), percent(row.wanted))).collect()))
-            .with(
-                Series::line("packing", rows.iter().map(|row| (mm(row), percent(row.found))).collect())
-                    .drawn(Stroke::Dashed, 1),
-            );
+    let sieves = Axis { ticks: rows.iter().map(mm).collect(), ..Axis::log10("sieve", "mm") };
+    let mut chart = Chart::new("Sieve curve", sieves, Axis::linear("passing", "%").between(0.0, 100.0))
+        .with(Series::line("input", rows.iter().map(|row| (mm(row), percent(row.wanted))).collect()))
+        .with(
+            Series::line("packing", rows.iter().map(|row| (mm(row), percent(row.found))).collect())
+                .drawn(Stroke::Dashed, 1),
+        );
     let bands: Vec<_> = grading
         .sieves()
         .iter()

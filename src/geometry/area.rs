@@ -20,8 +20,8 @@ fn below_and_left(r: f64, x: f64, y: f64) -> f64 {
         return left_of(r, x);
     }
     // The chord at `X` reaches from -sqrt(r²-X²) to min(y, sqrt(r²-X²)); `y` cuts it where |X| < sqrt(r²-y²).
-    let reach = (r * r - y * y).sqrt();
-    let under = |a: f64| 0.5 * (a * (r * r - a * a).max(0.0).sqrt() + r * r * (a / r).clamp(-1.0, 1.0).asin());
+    let reach = half_chord(r, y);
+    let under = |a: f64| 0.5 * (a * half_chord(r, a) + r * r * a.atan2(half_chord(r, a)));
     let lower_half = |a: f64, b: f64| if b > a { under(b) - under(a) } else { 0.0 };
     if y >= 0.0 {
         // Both halves everywhere, the upper one cut to `y` in the middle.
@@ -47,8 +47,14 @@ fn left_of(r: f64, x: f64) -> f64 {
     } else if x >= r {
         std::f64::consts::PI * r * r
     } else {
-        x * (r * r - x * x).sqrt() + r * r * (x / r).asin() + 0.5 * std::f64::consts::PI * r * r
+        x * half_chord(r, x) + r * r * x.atan2(half_chord(r, x)) + 0.5 * std::f64::consts::PI * r * r
     }
+}
+
+/// Half the chord at a distance `a` from the centre. As a product it keeps its digits near the rim, where `r² - a²` and an
+/// arc sine would lose half of them.
+fn half_chord(r: f64, a: f64) -> f64 {
+    ((r - a) * (r + a)).max(0.0).sqrt()
 }
 
 #[cfg(test)]

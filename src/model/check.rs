@@ -254,7 +254,7 @@ mod tests {
         let message = resolution.check().unwrap_err().to_string();
         assert!(message.starts_with("cells of 4 mm are too coarse for this scene\n"), "{message}");
         assert!(message.contains("11.4 mm  (2.8 GHz in `wet`, eps_r 90)"), "{message}");
-        assert!(message.contains("hint: `--cell 1.1mm`, or lower"), "{message}");
+        assert!(message.contains("hint: `--cell 1.1mm`, or a lower `--frequency`"), "{message}");
     }
 
     /// A Debye pole counts with what is left of it at the highest frequency: water 80.1 at rest, 78.2 at 2.76 GHz.
