@@ -152,6 +152,7 @@ fn run_args(target: &Path, solver: SolverName, force: bool) -> RunArgs {
         out: None,
         force,
         gprmax_python: None,
+        traces: None,
         json: false,
     }
 }

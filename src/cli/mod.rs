@@ -1,6 +1,7 @@
 //! The command line: one file per subcommand. The only place that prints, reads flags or exits.
 
 mod batch;
+mod bscan;
 mod build;
 mod child;
 mod compare;

@@ -7,6 +7,7 @@ use std::time::Instant;
 use clap::{Args, ValueEnum};
 
 use crate::cli::batch;
+use crate::cli::bscan;
 use crate::cli::error::CliError;
 use crate::cli::folder::{self, RunRecord};
 use crate::cli::progress::Bar;
@@ -20,7 +21,7 @@ pub struct RunArgs {
     /// already there are kept, a failure is reported and the rest goes on.
     #[arg(required = true, value_name = "FOLDER|FILE.in")]
     pub targets: Vec<PathBuf>,
-    /// `fdtd`: built in, 2-D. `gprmax`: runs the real gprMax (see `ballast-gpr gprmax install`).
+    /// `fdtd`: built in. `gprmax`: runs the real gprMax (see `ballast-gpr gprmax install`).
     #[arg(long, value_enum, default_value = "fdtd")]
     pub solver: SolverName,
     /// Threads of one run [default: all cores for one target, one for each of several].
@@ -41,6 +42,10 @@ pub struct RunArgs {
     /// Python interpreter that has gprMax, in place of the private one.
     #[arg(long, value_name = "PYTHON", env = "BALLAST_GPR_GPRMAX_PYTHON")]
     pub gprmax_python: Option<PathBuf>,
+    /// B-scan: NUM traces of one `.in` file, sources and receivers moved by its `#src_steps` and `#rx_steps`, the geometry
+    /// built once; the results are FILE1.h5, FILE2.h5 and so on, as gprMax numbers them.
+    #[arg(short = 'n', long, value_name = "NUM")]
+    pub traces: Option<NonZeroUsize>,
     /// Print the outcome as JSON.
     #[arg(long)]
     pub json: bool,
@@ -102,6 +107,9 @@ pub struct Outcome {
 /// # Errors
 /// When a run fails; with several targets, after the others have finished.
 pub fn run(args: &RunArgs) -> Result<(), CliError> {
+    if let Some(count) = args.traces {
+        return bscan::run(args, count);
+    }
     if args.targets.len() > 1 {
         if args.out.is_some() {
             return Err(CliError::input(
@@ -128,34 +136,60 @@ pub fn run(args: &RunArgs) -> Result<(), CliError> {
 pub fn run_one(args: &RunArgs, target: &Path) -> Result<Outcome, CliError> {
     let (input, result) = paths(args, target)?;
     let fingerprint = folder::model_fingerprint(&input)?;
-    if result.exists() && !args.force {
-        let same = |record: &RunRecord| {
-            record.model == fingerprint
-                && record.solver == args.solver.name()
-                && record.precision == args.precision.name()
-        };
-        if let Some(record) = RunRecord::beside(&result).filter(same) {
-            return Ok(Outcome { target: target.into(), result, kept: true, record });
-        }
-        return Err(other_result(args, &result, &fingerprint));
+    if let Some(record) = kept_or_refused(args, &result, &fingerprint)? {
+        return Ok(Outcome { target: target.into(), result, kept: true, record });
     }
     let started = Instant::now();
     let loop_seconds = match args.solver {
         SolverName::Fdtd => run_fdtd(args, &input, &result)?,
         SolverName::Gprmax => run_gprmax(args, &input, &result)?,
     };
-    let record = RunRecord {
+    let record = record(args, &fingerprint, started, loop_seconds);
+    record.write_beside(&result)?;
+    Ok(Outcome { target: target.into(), result, kept: false, record })
+}
+
+/// The record of a result that is there and is the one asked for; none where there is no result or it may be overwritten.
+///
+/// # Errors
+/// When another result is there.
+pub(super) fn kept_or_refused(args: &RunArgs, result: &Path, fingerprint: &str) -> Result<Option<RunRecord>, CliError> {
+    if !result.exists() || args.force {
+        return Ok(None);
+    }
+    let same = |record: &RunRecord| {
+        record.model == fingerprint && record.solver == args.solver.name() && record.precision == args.precision.name()
+    };
+    match RunRecord::beside(result).filter(same) {
+        Some(record) => Ok(Some(record)),
+        None => Err(other_result(args, result, fingerprint)),
+    }
+}
+
+/// What made a result.
+pub(super) fn record(args: &RunArgs, fingerprint: &str, started: Instant, loop_seconds: Option<f64>) -> RunRecord {
+    RunRecord {
         format_version: 1,
         program: folder::program(),
         solver: args.solver.name().into(),
         precision: args.precision.name().into(),
         threads: args.threads.map(NonZeroUsize::get),
-        model: fingerprint,
+        model: fingerprint.into(),
         wall_seconds: started.elapsed().as_secs_f64(),
         loop_seconds,
-    };
-    record.write_beside(&result)?;
-    Ok(Outcome { target: target.into(), result, kept: false, record })
+    }
+}
+
+/// The built-in solver as the flags want it.
+pub(super) fn built_in_solver(args: &RunArgs) -> Fdtd {
+    Fdtd {
+        precision: match args.precision {
+            PrecisionName::Single => Precision::Single,
+            PrecisionName::Double => Precision::Double,
+        },
+        threads: args.threads,
+        ..Fdtd::default()
+    }
 }
 
 /// Says why a result that is there is not the one asked for.
@@ -173,7 +207,7 @@ fn other_result(args: &RunArgs, result: &Path, fingerprint: &str) -> CliError {
 }
 
 /// The input file and the result of a target.
-fn paths(args: &RunArgs, target: &Path) -> Result<(PathBuf, PathBuf), CliError> {
+pub(super) fn paths(args: &RunArgs, target: &Path) -> Result<(PathBuf, PathBuf), CliError> {
     let (input, default) = if target.is_dir() {
         if !folder::is_built(target) {
             let scene = target.join(folder::SCENE);
@@ -220,16 +254,8 @@ fn run_fdtd(args: &RunArgs, input: &Path, result: &Path) -> Result<Option<f64>, 
     for note in &read.notes {
         eprintln!("note: {note}");
     }
-    let solver = Fdtd {
-        precision: match args.precision {
-            PrecisionName::Single => Precision::Single,
-            PrecisionName::Double => Precision::Double,
-        },
-        threads: args.threads,
-        ..Fdtd::default()
-    };
     let bar = Bar::new("simulating");
-    let (traces, stats) = solver.solve_stats(&read.model, &|progress| bar.update(progress))?;
+    let (traces, stats) = built_in_solver(args).solve_stats(&read.model, &|progress| bar.update(progress))?;
     drop(bar);
     gprmax::write_traces(result, &traces, &read.model)?;
     Ok(Some(stats.wall.si()))

@@ -96,7 +96,7 @@ fn every_supported_command_lands_in_the_model() {
             "line 19: `#rx` asks for Ez only: every component of the solver is given",
             "line 20: `#geometry_view` is not acted upon: no geometry file is written",
             "line 21: ignored, as gprMax does: a command must start in the first column",
-            "line 22: `#rx_steps` moves the receivers from the second trace of a B-scan on",
+            "line 22: `#rx_steps` moves the receivers from the second trace of a B-scan on (`run --traces`)",
         ]
     );
 }

@@ -70,7 +70,8 @@ pub fn read_input(path: &Path) -> Result<Input, InFileError> {
     }
     for command in commands.iter().filter(|command| ["src_steps", "rx_steps"].contains(&command.name)) {
         let what = if command.name == "src_steps" { "sources" } else { "receivers" };
-        let text = format!("`#{}` moves the {what} from the second trace of a B-scan on", command.name);
+        let text =
+            format!("`#{}` moves the {what} from the second trace of a B-scan on (`run --traces`)", command.name);
         notes.push(Note { line: command.line, text });
     }
     notes.sort_by_key(|note| note.line);

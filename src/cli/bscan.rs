@@ -1,0 +1,118 @@
+//! A B-scan: several traces of one input file, sources and receivers moved between them, the geometry painted once.
+
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use crate::cli::error::CliError;
+use crate::cli::folder::{self, RunRecord};
+use crate::cli::progress::Bar;
+use crate::cli::run::{Outcome, RunArgs, SolverName, built_in_solver, kept_or_refused, paths, record};
+use crate::cli::table::Report;
+use crate::fdtd::{Fdtd, Stats};
+use crate::forward::Progress;
+use crate::gprmax;
+use crate::model::{self, Model, Painted, Painted3, Resolution};
+use crate::trace::Traces;
+
+/// The cells and edges that all traces share.
+enum Geometry {
+    Two(Painted),
+    Three(Box<Painted3>),
+}
+
+impl Geometry {
+    fn of(model: &Model) -> Result<Self, CliError> {
+        let (geometry, resolution) = if model.grid.invariant_axis() == Some(2) {
+            let painted = model::paint(model)?;
+            let resolution = Resolution::of(model, &painted);
+            (Self::Two(painted), resolution)
+        } else {
+            let painted = model::paint3(model)?;
+            let resolution = Resolution::of_three(model, &painted);
+            (Self::Three(Box::new(painted)), resolution)
+        };
+        if let Some(resolution) = resolution {
+            resolution.check()?;
+        }
+        Ok(geometry)
+    }
+
+    fn solve(
+        &self,
+        solver: &Fdtd,
+        model: &Model,
+        bar: &Bar,
+        done: usize,
+        total: usize,
+    ) -> Result<(Traces, Stats), CliError> {
+        // A thousand parts for each trace, so that the bar moves within one, too.
+        let on_progress = |progress: Progress| {
+            let within = 1000 * progress.done / progress.total.max(1);
+            bar.update(Progress { done: 1000 * done + within, total: 1000 * total })
+        };
+        Ok(match self {
+            Self::Two(painted) => solver.solve_painted(model, painted, &on_progress)?,
+            Self::Three(painted) => solver.solve_painted_three(model, painted, &on_progress)?,
+        })
+    }
+}
+
+/// Runs `count` traces of one input file, numbered from 1 as gprMax does.
+///
+/// # Errors
+/// When the target is none, a trace leaves the grid, or a result may not be overwritten.
+pub fn run(args: &RunArgs, count: NonZeroUsize) -> Result<(), CliError> {
+    let [target] = args.targets.as_slice() else {
+        return Err(CliError::input(
+            "`--traces` takes one target\n\nhint: run the files of several B-scans one after another",
+        ));
+    };
+    if args.solver == SolverName::Gprmax {
+        return Err(CliError::input(
+            "`--traces` is for the built-in solver\n\nhint: leave `--solver gprmax` out, or start gprMax itself with `-n`",
+        ));
+    }
+    let (input, result) = paths(args, target)?;
+    let fingerprint = folder::model_fingerprint(&input)?;
+    let model = gprmax::read_model(&input)?;
+    if model.source_steps == [0.0; 3] && model.receiver_steps == [0.0; 3] {
+        eprintln!("warning: without `#src_steps` and `#rx_steps` all traces are the same");
+    }
+    let geometry = Geometry::of(&model)?;
+    let solver = built_in_solver(args);
+    let bar = Bar::new("B-scan");
+    let mut outcomes = Vec::new();
+    for trace in 0..count.get() {
+        let result = numbered(&result, trace + 1);
+        if let Some(record) = kept_or_refused(args, &result, &fingerprint)? {
+            outcomes.push(Outcome { target: target.clone(), result, kept: true, record });
+            continue;
+        }
+        let started = Instant::now();
+        let moved = model.at_trace(trace);
+        let (traces, stats) = geometry.solve(&solver, &moved, &bar, trace, count.get())?;
+        gprmax::write_traces(&result, &traces, &moved)?;
+        let record: RunRecord = record(args, &fingerprint, started, Some(stats.wall.si()));
+        record.write_beside(&result)?;
+        outcomes.push(Outcome { target: target.clone(), result, kept: false, record });
+    }
+    drop(bar);
+    if args.json {
+        println!("{}", serde_json::to_string_pretty(&outcomes)?);
+        return Ok(());
+    }
+    let mut table = Report::new(format!("{count} traces of {}", input.display()), ["result", "outcome", "seconds"]);
+    for outcome in &outcomes {
+        let how = if outcome.kept { "was there already" } else { "written" };
+        table.row([outcome.result.display().to_string(), how.into(), format!("{:.2}", outcome.record.wall_seconds)]);
+    }
+    table.print();
+    Ok(())
+}
+
+/// `scan.h5` becomes `scan3.h5`.
+fn numbered(result: &Path, number: usize) -> PathBuf {
+    let stem = result.file_stem().map_or("trace".into(), |stem| stem.to_string_lossy());
+    result.with_file_name(format!("{stem}{number}.h5"))
+}
