@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::cli::error::CliError;
 use crate::model::{Model, Painted, Source};
 use crate::plot::{Figure as _, MapFigure, MapLayer, MapSymbol, SymbolKind};
-use crate::raster::Placement;
+use crate::raster::{self, Placement};
 use crate::scene::Scene;
 
 /// Draws the map of a scene into its folder: `map.png` and `map.svg`.
@@ -13,13 +13,8 @@ use crate::scene::Scene;
 /// # Errors
 /// When a file cannot be written.
 pub fn write(scene: &Scene, model: &Model, painted: &Painted, folder: &Path) -> Result<Vec<PathBuf>, CliError> {
-    let frequency = scene.spec.antenna.frequency.si();
-    let eps: Vec<f32> = model
-        .materials
-        .iter()
-        .map(|material| if material.is_pec() { f32::INFINITY } else { material.eps_r_at(frequency) as f32 })
-        .collect();
-    let values = painted.solid.iter().map(|id| eps[id.index()]).collect();
+    let map = raster::permittivity_map(model, painted, scene.spec.antenna.frequency);
+    let values = map.iter().map(|eps| *eps as f32).collect();
     let [nx, ny] = painted.cells_xy;
     let [dx, dy, _] = model.grid.spacing;
     let mut figure = MapFigure::new(&scene.spec.title, values, [nx, ny], [nx as f64 * dx, ny as f64 * dy]);

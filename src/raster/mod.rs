@@ -2,7 +2,9 @@
 
 mod build;
 mod discs;
+mod map;
 mod placement;
 
 pub use build::{RasterError, antenna_alone, build_model};
+pub use map::permittivity_map;
 pub use placement::Placement;
