@@ -12,7 +12,7 @@ use ballast_gpr::units::Metres;
 #[test]
 fn finer_cells_err_less_and_cost_more() {
     let solver = Fdtd::default();
-    let bytes = |model: &ballast_gpr::model::Model| 12 * model.grid.cell_count() as u64;
+    let bytes = |model: &ballast_gpr::model::Model| Ok(12 * model.grid.cell_count() as u64);
     let solvers = [CostSolver { solver: &solver, double_precision: false, bytes: &bytes }];
     let cells = [Metres(0.008), Metres(0.004), Metres(0.002)];
     let table =

@@ -157,7 +157,7 @@ pub fn build_folder(
     map_figure::write(&scene, &model, &painted, target)?;
     let seconds =
         Seconds { packing: scene.packing_seconds, raster: raster_seconds, writing: started.elapsed().as_secs_f64() };
-    let manifest = Manifest::of(&scene, &model, &painted, seconds)?;
+    let manifest = Manifest::of(&scene, &model, &painted, seconds);
     manifest.write(&target.join(folder::MANIFEST))?;
     Ok(manifest)
 }

@@ -47,20 +47,11 @@ pub struct ExpectedWindows {
 }
 
 impl ExpectedWindows {
-    /// Windows around the arrivals of the layered bed: from 0.6 periods before to one after the surface's, and for the plate
-    /// from half a period before the fastest bed (mixture) to one after the slowest (2-D bed of true stones).
+    /// The windows of [`Scene::echo_windows`], counted from the start of a trace: the pulse peaks at `sqrt(2) / f`.
     pub fn of(scene: &Scene) -> Self {
-        let period = 1.0 / scene.spec.antenna.frequency.si();
-        let pulse_delay = std::f64::consts::SQRT_2 * period;
-        let at = |travel: f64| pulse_delay + travel;
-        let surface = scene.arrivals.surface.si();
-        let slow = scene.slowest_delay().si();
-        let plate = (scene.arrivals.plate.si() - 0.5 * period, surface + slow + period);
-        Self {
-            pulse_delay,
-            surface: [at(surface - 0.6 * period), at(surface + period)],
-            plate: scene.spec.tank.metal_plate.then(|| [at(plate.0), at(plate.1)]),
-        }
+        let pulse_delay = std::f64::consts::SQRT_2 / scene.spec.antenna.frequency.si();
+        let [surface, plate] = scene.echo_windows().map(|window| window.map(|travel| pulse_delay + travel.si()));
+        Self { pulse_delay, surface, plate: scene.spec.tank.metal_plate.then_some(plate) }
     }
 }
 
@@ -101,11 +92,8 @@ pub struct Manifest {
 
 impl Manifest {
     /// Collects the figures of a built scene.
-    ///
-    /// # Errors
-    /// Never at present; kept fallible for figures that may not exist.
-    pub fn of(scene: &Scene, model: &Model, painted: &Painted, seconds: Seconds) -> Result<Self, CliError> {
-        Ok(Self {
+    pub fn of(scene: &Scene, model: &Model, painted: &Painted, seconds: Seconds) -> Self {
+        Self {
             format_version: 1,
             program: folder::program(),
             seed: scene.spec.seed,
@@ -126,7 +114,7 @@ impl Manifest {
             iterations: model.iterations(),
             effects: Effects::of(model, painted),
             seconds,
-        })
+        }
     }
 
     /// One line for people.

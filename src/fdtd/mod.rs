@@ -29,7 +29,7 @@ mod three;
 
 pub use error::FdtdError;
 pub use instructions::InstructionSet;
-pub use predict::{Prediction, predict};
+pub use predict::{Prediction, memory, predict};
 pub use reach::{Reach, reach};
 pub use solver::{Fdtd, Precision, Stats, Stepping};
 pub use three::predict_three;

@@ -31,6 +31,14 @@ const TRIAL_CELL_STEPS: usize = 2_400_000;
 /// Runs of each length, of which the fastest counts.
 const TRIALS: usize = 3;
 
+/// Memory of the fields and coefficients of a two-dimensional model, bytes.
+///
+/// # Errors
+/// Whatever the solver cannot do, as [`Fdtd::solve_stats`] would say it.
+pub fn memory(model: &Model, painted: &Painted, precision: Precision) -> Result<u64, FdtdError> {
+    Ok(bytes_needed(&Setup::new(model, painted)?, precision))
+}
+
 /// Predicts memory and wall time in single precision, from trial runs of some twenty milliseconds in all on this machine;
 /// twice that for a model with Debye media.
 ///

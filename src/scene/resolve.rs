@@ -50,6 +50,21 @@ impl Scene {
         self.packing.as_ref().map_or(&[], |packing| packing.discs.as_slice())
     }
 
+    /// From and to, counted from the emission, of the surface's and the plate's echo.
+    ///
+    /// The surface is looked for from 0.6 periods before to one after its arrival: stones stand above and below the nominal
+    /// surface, and the loose top lets the wave in. The plate from half a period before the arrival through the mixture to
+    /// a period after that through the slowest bed (a 2-D bed of true stones).
+    pub fn echo_windows(&self) -> [[Seconds; 2]; 2] {
+        let period = 1.0 / self.spec.antenna.frequency.si();
+        let (surface, plate) = (self.arrivals.surface.si(), self.arrivals.plate.si());
+        let slowest = surface + self.slowest_delay().si();
+        [
+            [Seconds(surface - 0.6 * period), Seconds(surface + period)],
+            [Seconds(plate.min(slowest) - 0.5 * period), Seconds(plate.max(slowest) + period)],
+        ]
+    }
+
     /// Two-way travel time through the layers if each were as slow as a 2-D bed of true stones.
     pub fn slowest_delay(&self) -> Seconds {
         let delay = |layer: &Layer| {

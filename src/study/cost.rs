@@ -95,7 +95,7 @@ pub struct CostSolver<'a> {
     /// Whether it computes in double precision.
     pub double_precision: bool,
     /// Memory for a model, bytes.
-    pub bytes: &'a dyn Fn(&crate::model::Model) -> u64,
+    pub bytes: &'a dyn Fn(&crate::model::Model) -> Result<u64, ForwardError>,
 }
 
 /// Why there is no cost curve.
@@ -192,7 +192,7 @@ fn one_run(
     let window = scene.spec.grid.time_window.si();
     let trace = compare::resample(&echoes, Seconds(0.0), Seconds(COMMON_STEP), (window / COMMON_STEP) as usize);
     let cell_steps = (model.grid.cell_count() * model.iterations()) as u64;
-    let point = CostPoint { setting, error: f64::NAN, seconds, bytes: (solver.bytes)(&model), cell_steps };
+    let point = CostPoint { setting, error: f64::NAN, seconds, bytes: (solver.bytes)(&model)?, cell_steps };
     Ok((point, trace))
 }
 

@@ -128,23 +128,12 @@ impl PlateReference {
         Seconds(self.echo.waveform.time.si() - self.travel)
     }
 
-    /// Where echoes from the emission's time `from` to `to` lie in a trace.
-    fn window(&self, from: f64, to: f64) -> (Seconds, Seconds) {
-        let zero = self.zero().si();
-        (Seconds(zero + from), Seconds(zero + to))
-    }
-
-    /// Where the surface and the plate echo of a scene lie in a trace.
-    ///
-    /// The surface is looked for from 0.6 periods before to one after its arrival: stones stand above and below the nominal
-    /// surface, and the loose top lets the wave in; the plate between half a period before the arrival
-    /// through the mixture and a period after that through the slowest bed (a 2-D bed of true stones).
+    /// Where the surface and the plate echo of a scene lie in a trace: [`Scene::echo_windows`] from the emission.
     pub fn windows(&self, scene: &Scene) -> ((Seconds, Seconds), (Seconds, Seconds)) {
-        let period = 1.0 / scene.spec.antenna.frequency.si();
-        let (surface, plate) = (scene.arrivals.surface.si(), scene.arrivals.plate.si());
-        let slowest = surface + scene.slowest_delay().si();
-        let around_surface = self.window(surface - 0.6 * period, surface + period);
-        (around_surface, self.window(plate.min(slowest) - 0.5 * period, plate.max(slowest) + period))
+        let zero = self.zero().si();
+        let [surface, plate] =
+            scene.echo_windows().map(|[from, to]| (Seconds(zero + from.si()), Seconds(zero + to.si())));
+        (surface, plate)
     }
 
     /// Picks the echoes of a scene in a trace of it, in [`windows`](Self::windows).

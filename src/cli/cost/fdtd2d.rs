@@ -7,10 +7,11 @@ use crate::cli::explain::human_bytes;
 use crate::cli::interrupt;
 use crate::cli::progress::Bar;
 use crate::cli::table::Report;
-use crate::fdtd::{self, Fdtd, Precision};
+use crate::fdtd::{self, Fdtd, FdtdError, Precision};
 use crate::files;
-use crate::forward::Progress;
+use crate::forward::{ForwardError, Progress};
 use crate::gprmax;
+use crate::model::{Model, paint};
 use crate::plot::{Axis, Chart, Figure as _, Series, Stroke};
 use crate::scene::Smoothing;
 use crate::study::{CostPoint, CostScene, CostSolver, CostTable, cost_curve};
@@ -28,14 +29,13 @@ pub(super) fn run(args: &CostArgs) -> Result<(), CliError> {
         cells.push(Metres(last / 2.0));
     }
     let (single, double) = (Fdtd::default(), Fdtd { precision: Precision::Double, ..Fdtd::default() });
-    let bytes = |model: &crate::model::Model| {
-        let painted = crate::model::paint(model).ok();
-        painted.and_then(|painted| fdtd::predict(model, &painted, None).ok()).map_or(0, |prediction| prediction.bytes)
+    let bytes = |model: &Model, precision| -> Result<u64, ForwardError> {
+        let painted = paint(model).map_err(FdtdError::from)?;
+        Ok(fdtd::memory(model, &painted, precision)?)
     };
-    let twice = |model: &crate::model::Model| 2 * bytes(model);
     let solvers = [
-        CostSolver { solver: &single, double_precision: false, bytes: &bytes },
-        CostSolver { solver: &double, double_precision: true, bytes: &twice },
+        CostSolver { solver: &single, double_precision: false, bytes: &|model| bytes(model, Precision::Single) },
+        CostSolver { solver: &double, double_precision: true, bytes: &|model| bytes(model, Precision::Double) },
     ];
     let bar = Bar::new("cost curve");
     let on_point = |done, total| {
