@@ -23,7 +23,7 @@ enum Geometry {
 
 impl Geometry {
     fn of(model: &Model) -> Result<Self, CliError> {
-        let (geometry, resolution) = if model.grid.invariant_axis() == Some(2) {
+        let (geometry, resolution) = if model.is_plane() {
             let painted = model::paint(model)?;
             let resolution = Resolution::of(model, &painted);
             (Self::Two(painted), resolution)

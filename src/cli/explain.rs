@@ -130,7 +130,7 @@ struct Forecast {
 impl Forecast {
     /// Paints a model, two- or three-dimensional, and reads off it what a run will be like.
     fn of(model: &Model, threads: Option<NonZeroUsize>) -> Result<Self, CliError> {
-        if model.grid.invariant_axis() == Some(2) {
+        if model.is_plane() {
             let painted = model::paint(model)?;
             return Ok(Self {
                 effects: Effects::of(model, &painted),

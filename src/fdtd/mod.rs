@@ -1,5 +1,5 @@
 //! The embedded finite-difference time-domain solver, gprMax's numerics: two-dimensional (TMz, invariant along z) here, all
-//! other grids in `three`.
+//! else in `three`; [`Model::route`](crate::model::Model::route) decides.
 //!
 //! [`Fdtd`] fulfils [`Forward`](crate::forward::Forward). A model is painted, turned into coefficients (`setup`), cut
 //! into blocks of rows, one per thread (`block`), and stepped (`team`), several steps per pass over the rows; the loops over

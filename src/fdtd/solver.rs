@@ -110,7 +110,7 @@ impl Fdtd {
     /// # Errors
     /// See [`FdtdError`].
     pub fn solve_stats(&self, model: &Model, on_progress: OnProgress<'_>) -> Result<(Traces, Stats), FdtdError> {
-        if model.grid.invariant_axis() != Some(2) {
+        if !model.is_plane() {
             return self.solve_three(model, on_progress);
         }
         check_model(model)?;
@@ -122,8 +122,8 @@ impl Fdtd {
         self.solve_painted(model, &painted, on_progress)
     }
 
-    /// Runs a two-dimensional model that has been painted (and its resolution checked) already; for other grids see
-    /// [`Fdtd::solve_painted_three`].
+    /// Runs a model of [`Route::Plane`](crate::model::Route::Plane) that has been painted (and its resolution checked)
+    /// already; for all others see [`Fdtd::solve_painted_three`].
     ///
     /// # Errors
     /// See [`FdtdError`].

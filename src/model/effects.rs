@@ -1,6 +1,6 @@
 //! Which physical effects a model calls for, read off the model and never off a flag.
 
-use super::{EdgeMaterial, Material, Model, Painted, Painted3};
+use super::{EdgeMaterial, Material, Model, Painted, Painted3, Route};
 
 /// One effect: on or off, and why.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -68,6 +68,7 @@ impl Effects {
             survey.conductor(),
             survey.absorbing(),
             survey.magnetic(),
+            survey.components(),
         ];
         Self { list }
     }
@@ -185,14 +186,17 @@ impl Survey<'_> {
 
     fn magnetic(&self) -> Effect {
         let who = self.who(|m| m.mu_r != 1.0 || m.sigma_magnetic != 0.0);
-        let reason = who.map(|who| {
-            let unknown = if self.three { "" } else { ", which the embedded solver does not know: use gprMax" };
-            format!("{who} is magnetic{unknown}")
-        });
+        let reason = who.map(|who| format!("{who} is magnetic")).ok_or("nothing on the grid is magnetic");
         // Two numbers for each component of H, where anything is magnetic.
-        let bytes = if self.three { 2 * self.edges as u64 * NUMBER } else { 0 };
-        let reason = reason.ok_or("nothing on the grid is magnetic");
-        self.effect("magnetic loss / permeability", reason, bytes, 0)
+        self.effect("magnetic loss / permeability", reason, 2 * self.edges as u64 * NUMBER, 0)
+    }
+
+    fn components(&self) -> Effect {
+        let reason = match self.model.route() {
+            Route::Space { why } => Ok(why),
+            Route::Plane => Err("two-dimensional along z: Ez, Hx and Hy"),
+        };
+        self.effect("all six components", reason, 0, self.edges)
     }
 }
 

@@ -14,6 +14,7 @@ mod paint;
 mod paint3;
 mod painted3;
 mod palette;
+mod route;
 mod source;
 mod spec;
 
@@ -30,5 +31,6 @@ pub use paint::{PaintError, Painted, check_two_dimensional, paint};
 pub use paint3::{check_grid, paint3};
 pub use painted3::Painted3;
 pub use palette::{EdgeMaterial, FaceMaterial};
+pub use route::Route;
 pub use source::{Axis, Excitation, HertzianDipole, Receiver, Source, Waveform, WaveformKind};
 pub use spec::{Model, TimeWindow};

@@ -46,6 +46,18 @@ pub enum Object {
     Voxels(Voxels),
 }
 
+impl Object {
+    /// Whether any of it is made of a material.
+    pub fn holds(&self, id: MaterialId) -> bool {
+        match self {
+            Self::Box { material, .. } | Self::Cylinder { material, .. } | Self::Sphere { material, .. } => {
+                *material == id
+            }
+            Self::Voxels(block) => block.cells.contains(&Some(id)),
+        }
+    }
+}
+
 /// A block of cells, each with its material.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Voxels {

@@ -18,7 +18,7 @@ use crate::trace::{AScan, Component, ReceiverTraces, Traces};
 use crate::units::{Metres, Seconds};
 
 impl Fdtd {
-    /// Paints a model on any grid that is not two-dimensional along z and runs it.
+    /// Paints a model of [`Route::Space`](crate::model::Route::Space) and runs it.
     ///
     /// # Errors
     /// See [`FdtdError`].

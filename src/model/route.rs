@@ -1,0 +1,75 @@
+//! Which way through the embedded solver a model takes.
+
+use super::{Material, MaterialId, Model};
+
+/// The way through the embedded solver that a model takes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Route {
+    /// Two-dimensional along z, Ez, Hx and Hy only, and nothing that the loops made for this do not know.
+    Plane,
+    /// All six components, on any grid; one along z that asks for more than the plane knows is a single cell thick.
+    Space {
+        /// What in the model asks for it.
+        why: String,
+    },
+}
+
+impl Model {
+    /// Tells which way the model takes: the one place that decides.
+    pub fn route(&self) -> Route {
+        let why = match self.grid.invariant_axis() {
+            Some(2) => self.beyond_the_plane(),
+            Some(axis) => Some(format!("the grid is one cell thick along {}", ["x", "y", "z"][axis])),
+            None => Some("the grid has three dimensions".into()),
+        };
+        why.map_or(Route::Plane, |why| Route::Space { why })
+    }
+
+    /// Whether the loops for two dimensions along z run the model.
+    pub fn is_plane(&self) -> bool {
+        self.route() == Route::Plane
+    }
+
+    /// What a model along z asks for that the plane does not know.
+    fn beyond_the_plane(&self) -> Option<String> {
+        // Whatever an object is made of counts, whether or not a cell of it stays after painting.
+        let used = |index: usize| self.objects.iter().any(|object| object.holds(MaterialId(index as u16)));
+        let magnetic = |(index, material): &(usize, &Material)| material.is_magnetic() && used(*index);
+        let (_, material) = self.materials.iter().enumerate().find(magnetic)?;
+        Some(format!("`{}` is magnetic", material.id))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Grid, Object, TimeWindow};
+
+    fn why(model: &Model) -> Option<String> {
+        match model.route() {
+            Route::Plane => None,
+            Route::Space { why } => Some(why),
+        }
+    }
+
+    #[test]
+    fn a_magnetic_material_leaves_the_plane_once_an_object_is_made_of_it() {
+        let grid = Grid { cells: [40, 30, 1], spacing: [0.002; 3] };
+        let mut model = Model::new("", grid, TimeWindow::Iterations(1));
+        let material = model.add_material(Material { mu_r: 2.0, ..Material::dielectric("ore", 5.0, 0.0) });
+        assert!(model.is_plane());
+        let (lower, upper) = ([0.02, 0.02, 0.0], [0.03, 0.03, 0.002]);
+        model.objects.push(Object::Box { lower, upper, material, averaging: true });
+        assert_eq!(why(&model).unwrap(), "`ore` is magnetic");
+    }
+
+    #[test]
+    fn any_other_grid_leaves_the_plane() {
+        for (cells, said) in
+            [([40, 1, 30], "the grid is one cell thick along y"), ([40, 30, 20], "the grid has three dimensions")]
+        {
+            let model = Model::new("", Grid { cells, spacing: [0.002; 3] }, TimeWindow::Iterations(1));
+            assert_eq!(why(&model).unwrap(), said);
+        }
+    }
+}
