@@ -3,9 +3,10 @@
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
+use ballast_gpr::compare::worst_field_difference;
 use ballast_gpr::fdtd::{Fdtd, Precision};
 use ballast_gpr::gprmax::{read_model, read_traces};
-use ballast_gpr::trace::{Component, ReceiverTraces, Traces};
+use ballast_gpr::trace::Traces;
 
 fn scenes() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("validation/gprmax3d");
@@ -23,30 +24,11 @@ fn solve(scene: &Path, precision: Precision) -> Traces {
     Fdtd { precision, ..Fdtd::default() }.solve_stats(&model, &|_| ControlFlow::Continue(())).unwrap().0
 }
 
-fn samples(receiver: &ReceiverTraces, component: Component) -> &[f64] {
-    &receiver.component(component).unwrap().samples
-}
-
-/// The norm of all components of a kind, electric or magnetic: a component that symmetry makes zero has none of its own.
-fn norm(receiver: &ReceiverTraces, magnetic: bool) -> f64 {
-    let of_kind = Component::FIELDS.into_iter().filter(|component| component.is_magnetic() == magnetic);
-    of_kind.flat_map(|component| samples(receiver, component)).map(|v| v * v).sum::<f64>().sqrt()
-}
-
 /// The largest `|ours - theirs| / |theirs|` over receivers and components.
 fn worst(ours: &Traces, theirs: &Traces) -> f64 {
     assert_eq!((ours.cells, ours.iterations), (theirs.cells, theirs.iterations));
     assert!((ours.time_step.si() / theirs.time_step.si() - 1.0).abs() < 1e-15);
-    assert_eq!(ours.receivers.len(), theirs.receivers.len());
-    let mut worst = 0.0f64;
-    for (ours, theirs) in ours.receivers.iter().zip(&theirs.receivers) {
-        for component in Component::FIELDS {
-            let pairs = samples(ours, component).iter().zip(samples(theirs, component));
-            let difference: f64 = pairs.map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
-            worst = worst.max(difference / norm(theirs, component.is_magnetic()));
-        }
-    }
-    worst
+    worst_field_difference(theirs, ours).unwrap()
 }
 
 /// The same sums in another order: round-off of 1e-16 grows to 4e-13 at most over some hundred steps (780 of them in

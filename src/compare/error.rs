@@ -1,7 +1,7 @@
 //! Why two traces cannot be compared.
 
 use super::picks::{Event, NoEcho};
-use crate::trace::AScan;
+use crate::trace::{AScan, Component};
 use crate::units::Seconds;
 
 /// Why two traces cannot be compared.
@@ -148,6 +148,22 @@ pub enum CompareError {
         samples_b: usize,
         /// Its time step.
         step_b: Seconds,
+    },
+    /// Two runs that do not have the same receivers, or none.
+    #[error("{a} receivers cannot be compared with {b}")]
+    Receivers {
+        /// Receivers of the first run.
+        a: usize,
+        /// Receivers of the second.
+        b: usize,
+    },
+    /// A receiver without one of the six components.
+    #[error("receiver `{receiver}` has no {}", component.name())]
+    NoComponent {
+        /// Its name.
+        receiver: String,
+        /// The component.
+        component: Component,
     },
 }
 

@@ -135,7 +135,7 @@ pub fn rmse(a: &AScan, b: &AScan) -> Result<f64, CompareError> {
     Ok((squares / a.samples.len() as f64).sqrt())
 }
 
-fn same_axis(a: &AScan, b: &AScan) -> Result<(), CompareError> {
+pub(super) fn same_axis(a: &AScan, b: &AScan) -> Result<(), CompareError> {
     for trace in [a, b] {
         if trace.samples.is_empty() {
             return Err(CompareError::Empty { name: trace.name.clone() });

@@ -9,6 +9,7 @@
 
 mod comparison;
 mod error;
+mod fields;
 mod metrics;
 pub mod permittivity;
 mod picks;
@@ -19,6 +20,7 @@ pub mod text;
 
 pub use comparison::{CompareOptions, Comparison, Normalisation, Polarity, TimeZero, compare};
 pub use error::CompareError;
+pub use fields::worst_field_difference;
 pub use metrics::{CrossCorrelation, Metrics, TimeError, correlation, cross_correlation, relative_l2, rmse};
 pub use picks::{Echo, EchoPick, Event, ExpectedEchoes, NoEcho, Pick, PickedOn, Picks, pick_echoes};
 pub use resample::resample;

@@ -22,9 +22,9 @@ pub struct ValidateArgs {
     /// `fast` takes under a minute; `full` adds the ensembles and runs real gprMax.
     #[arg(long, value_enum, default_value = "fast")]
     pub tier: Tier,
-    /// Folder with gprMax's input and output files for `gprmax`.
-    #[arg(long, value_name = "FOLDER", default_value = "validation/gprmax")]
-    pub cases: PathBuf,
+    /// Folders with gprMax's input and output files for `gprmax`.
+    #[arg(long, value_name = "FOLDER", num_args = 1.., default_values = ["validation/gprmax", "validation/gprmax3d"])]
+    pub cases: Vec<PathBuf>,
     /// Folder for figures; none are drawn without it.
     #[arg(long, value_name = "FOLDER")]
     pub out: Option<PathBuf>,
@@ -46,7 +46,7 @@ pub enum CaseName {
     Benedetto2018,
     /// The built-in solver on homogeneous layers against exact arrivals.
     TankArrivals,
-    /// The built-in solver against gprMax's own outputs (and, in the full tier, against gprMax run on the tanks).
+    /// The built-in solver against gprMax's own outputs (in the full tier gprMax runs again, on the tanks too).
     Gprmax,
     /// Echoes of real packings, ten seeds, clean and fouled, true and equivalent stones (full tier).
     TankEchoes,
