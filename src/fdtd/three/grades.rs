@@ -35,22 +35,44 @@ impl<T: Number> Table<T> {
 
 /// The coefficients on the edges of a plane.
 pub enum Grades<T> {
-    /// Indices into the table, `nz` padded to whole vectors for each row of x, y and z edges.
+    /// Indices into the table, one byte an edge.
     Indexed {
-        /// One byte an edge.
+        /// The rows of x, y and z edges that are not even, `nz` padded to whole vectors for each.
         index: [Vec<u8>; 3],
-        /// The one entry that all edges of a row hold, or [`MIXED`].
-        whole: [Vec<u8>; 3],
+        /// What each row holds.
+        rows: [Vec<RowIndex>; 3],
         /// Whether any edge of a row conducts.
         lossy: Vec<bool>,
     },
     /// One number an edge.
     Stored {
-        /// Absent where nothing on the grid conducts.
+        /// Absent where nothing in the plane conducts.
         ca: Option<Box<[Sheet<T>; 3]>>,
         /// What takes the curl.
         cb: Box<[Sheet<T>; 3]>,
+        /// Whether any edge of a row conducts.
+        lossy: Vec<bool>,
     },
+}
+
+/// Where a row's indices are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RowIndex {
+    /// The one entry that all edges of the row hold, or [`MIXED`].
+    whole: u8,
+    /// Place of the indices of a mixed row, in rows.
+    place: u32,
+}
+
+/// The entries of the palette on a row of edges.
+fn entries<'a>(setup: &'a Setup3<'_>, axis: usize, i: usize, j: usize) -> impl Iterator<Item = usize> + use<'a> {
+    let (edges, first) = (&setup.painted.edges[axis], setup.painted.node([i, j, 0]));
+    (first..first + setup.painted.cells[2]).map(|node| edges.get(node) as usize)
+}
+
+/// Whether any edge of a row conducts.
+fn conducts(setup: &Setup3<'_>, i: usize, j: usize) -> bool {
+    (0..3).any(|axis| entries(setup, axis, i, j).any(|entry| setup.edges[entry].is_lossy()))
 }
 
 /// The coefficients of one row, x, y and z edges.
@@ -82,14 +104,13 @@ impl<T: Number> Grades<T> {
     pub fn new(setup: &Setup3<'_>, i: usize, indexed: bool) -> Self {
         let [_, ny, nz] = setup.painted.cells;
         let width = padded(nz);
+        let lossy: Vec<bool> = (0..ny).map(|j| setup.lossy() && conducts(setup, i, j)).collect();
         if !indexed {
             let mut cb = Box::new(std::array::from_fn(|_| Sheet::zeros(ny - 1, width)));
-            let mut ca = setup.lossy().then(|| cb.clone());
+            let mut ca = lossy.contains(&true).then(|| cb.clone());
             for j in 0..ny {
-                let first = setup.painted.node([i, j, 0]);
                 for axis in 0..3 {
-                    for k in 0..nz {
-                        let entry = setup.painted.edges[axis].get(first + k) as usize;
+                    for (k, entry) in entries(setup, axis, i, j).enumerate() {
                         let [a, b] = setup.coefficients(axis, entry);
                         cb[axis].at_mut(j, k, 1)[0] = T::of(b);
                         if let Some(ca) = &mut ca {
@@ -98,39 +119,43 @@ impl<T: Number> Grades<T> {
                     }
                 }
             }
-            return Self::Stored { ca, cb };
+            return Self::Stored { ca, cb, lossy };
         }
-        let mut index: [Vec<u8>; 3] = std::array::from_fn(|_| vec![0; ny * width]);
-        let mut whole: [Vec<u8>; 3] = std::array::from_fn(|_| vec![MIXED; ny]);
-        let mut lossy = vec![false; ny];
-        for j in 0..ny {
-            let first = setup.painted.node([i, j, 0]);
-            for axis in 0..3 {
-                let row = &mut index[axis][j * width..][..width];
-                for (k, entry) in row[..nz].iter_mut().enumerate() {
-                    *entry = setup.painted.edges[axis].get(first + k) as u8;
-                }
-                let last = row[nz - 1];
-                row[nz..].fill(last);
-                if row.iter().all(|&entry| entry == last) {
-                    whole[axis][j] = last;
-                }
-                lossy[j] |= row.iter().any(|&entry| setup.edges[usize::from(entry)].is_lossy());
+        let (mut index, mut rows): ([Vec<u8>; 3], [Vec<RowIndex>; 3]) = Default::default();
+        for axis in 0..3 {
+            let (index, rows) = (&mut index[axis], &mut rows[axis]);
+            rows.reserve_exact(ny);
+            for j in 0..ny {
+                let begin = index.len();
+                index.extend(entries(setup, axis, i, j).map(|entry| entry as u8));
+                let last = index[begin + nz - 1];
+                let even = index[begin..].iter().all(|&entry| entry == last);
+                index.resize(if even { begin } else { begin + width }, last);
+                rows.push(RowIndex { whole: if even { last } else { MIXED }, place: (begin / width) as u32 });
             }
+            index.shrink_to_fit();
         }
-        Self::Indexed { index, whole, lossy }
+        Self::Indexed { index, rows, lossy }
     }
 
     /// Memory of all planes, bytes.
     pub fn bytes(setup: &Setup3<'_>) -> u64 {
         let [nx, ny, nz] = setup.painted.cells;
-        let width = padded(nz);
-        let plane = if setup.edges.len() <= TABLE {
-            (3 * ny * (width + 1) + ny) as u64
-        } else {
-            Sheet::<T>::bytes(ny - 1, width) * if setup.lossy() { 6 } else { 3 }
+        let (width, sheets) = (padded(nz), 3 * Sheet::<T>::bytes(ny - 1, padded(nz)));
+        let of_plane = |i: usize| -> u64 {
+            if setup.edges.len() > TABLE {
+                let lossy = setup.lossy() && (0..ny).any(|j| conducts(setup, i, j));
+                return sheets * if lossy { 2 } else { 1 };
+            }
+            let is_mixed = |axis: usize, j: usize| {
+                let mut entries = entries(setup, axis, i, j);
+                let first = entries.next();
+                entries.any(|entry| Some(entry) != first)
+            };
+            let mixed: usize = (0..3).map(|axis| (0..ny).filter(|&j| is_mixed(axis, j)).count()).sum();
+            (mixed * width + 3 * ny * size_of::<RowIndex>()) as u64
         };
-        plane * nx as u64
+        (0..nx).map(|i| of_plane(i) + ny as u64).sum()
     }
 
     /// The coefficients of row `j`.
@@ -144,27 +169,29 @@ impl<T: Number> Grades<T> {
     ) -> RowGrades<'a, T> {
         let width = lookup.cb[0].len();
         match (self, table) {
-            (Self::Indexed { index, whole, lossy }, Some(table)) => {
+            (Self::Indexed { index, rows, lossy }, Some(table)) => {
                 let lossy = lossy[j];
                 for axis in 0..3 {
-                    let (entry, index) = (whole[axis][j], &index[axis][j * width..][..width]);
+                    let row = rows[axis][j];
+                    let index =
+                        if row.whole == MIXED { &index[axis][row.place as usize * width..][..width] } else { &[] };
                     let Lookup { ca, cb, holds } = &mut *lookup;
                     let [holds_ca, holds_cb] = &mut holds[axis];
-                    fill(set, &table.cb[axis], table.few, entry, index, &mut cb[axis], holds_cb);
+                    fill(set, &table.cb[axis], table.few, row.whole, index, &mut cb[axis], holds_cb);
                     if lossy {
-                        fill(set, &table.ca, table.few, entry, index, &mut ca[axis], holds_ca);
+                        fill(set, &table.ca, table.few, row.whole, index, &mut ca[axis], holds_ca);
                     }
                 }
                 let [ax, ay, az] = &lookup.ca;
                 let [bx, by, bz] = &lookup.cb;
                 RowGrades { ca: lossy.then_some([&ax[..], ay, az]), cb: [bx, by, bz] }
             }
-            (Self::Stored { ca, cb }, _) => {
+            (Self::Stored { ca, cb, lossy }, _) => {
                 let row = |sheets: &'a [Sheet<T>; 3]| {
                     let [x, y, z] = sheets;
                     [x.at(j, 0, width), y.at(j, 0, width), z.at(j, 0, width)]
                 };
-                RowGrades { ca: ca.as_deref().map(row), cb: row(cb) }
+                RowGrades { ca: ca.as_deref().filter(|_| lossy[j]).map(row), cb: row(cb) }
             }
             (Self::Indexed { .. }, None) => {
                 let [bx, by, bz] = &lookup.cb;

@@ -116,7 +116,7 @@ impl<T: Number> Plane<T> {
         }
     }
 
-    /// Allocates plane `i`.
+    /// Reads what lies on plane `i`; the fields come with [`Plane::add_fields`], when the painting may have been freed.
     pub fn new(setup: &Setup3<'_>, shared: &Shared<T>, i: usize) -> Self {
         let [_, ny, nz] = setup.painted.cells;
         let mut drives: Vec<_> = setup
@@ -151,13 +151,21 @@ impl<T: Number> Plane<T> {
         Self {
             i,
             grades: Some(Grades::new(setup, i, shared.table.is_some())),
+            e: std::array::from_fn(|_| Sheet::zeros(0, 0)),
+            h: std::array::from_fn(|_| Sheet::zeros(0, 0)),
             magnetic: setup.magnetic().then(|| Box::new([faces(0), faces(1)])),
-            absorbing: Some(Absorbing::new(setup, i, shared.width, &shared.z)),
+            absorbing: None,
             drives,
             dispersion: Dispersion::new(setup, i),
             probes: probes.map(probe).collect(),
-            ..Self::beyond(setup)
         }
+    }
+
+    /// Allocates the fields and the absorbing memory of the plane.
+    pub fn add_fields(self, setup: &Setup3<'_>, shared: &Shared<T>) -> Self {
+        let absorbing = Some(Absorbing::new(setup, self.i, shared.width, &shared.z));
+        let Self { e, h, .. } = Self::beyond(setup);
+        Self { e, h, absorbing, ..self }
     }
 
     /// Takes the receivers' samples before a step; the first that is beyond `limit`, as axis and `(j, k)`.

@@ -1,5 +1,6 @@
 //! A three-dimensional run from a painted model to traces, and what it will cost.
 
+use std::borrow::Cow;
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 
@@ -33,7 +34,7 @@ impl Fdtd {
         if let Some(resolution) = Resolution::of_three(model, &painted) {
             resolution.check()?;
         }
-        self.solve_painted_three(model, &painted, on_progress)
+        self.solve_setup(model, Setup3::new(model, Cow::Owned(painted))?, on_progress)
     }
 
     /// Runs a model that has been painted by [`paint3`] (and its resolution checked) already.
@@ -46,12 +47,20 @@ impl Fdtd {
         painted: &Painted3,
         on_progress: OnProgress<'_>,
     ) -> Result<(Traces, Stats), FdtdError> {
-        let setup = Setup3::new(model, painted)?;
+        self.solve_setup(model, Setup3::new(model, Cow::Borrowed(painted))?, on_progress)
+    }
+
+    fn solve_setup(
+        &self,
+        model: &Model,
+        mut setup: Setup3<'_>,
+        on_progress: OnProgress<'_>,
+    ) -> Result<(Traces, Stats), FdtdError> {
         let bytes = bytes_needed(&setup, self.precision);
         check_memory(bytes, available_memory())?;
         let (probes, mut stats) = match self.precision {
-            Precision::Single => self.run_three::<f32>(model, &setup, on_progress)?,
-            Precision::Double => self.run_three::<f64>(model, &setup, on_progress)?,
+            Precision::Single => self.run_three::<f32>(model, &mut setup, on_progress)?,
+            Precision::Double => self.run_three::<f64>(model, &mut setup, on_progress)?,
         };
         stats.bytes = bytes;
         Ok((traces(self.precision, model, &setup, probes), stats))
@@ -60,7 +69,7 @@ impl Fdtd {
     fn run_three<T: Number>(
         &self,
         model: &Model,
-        setup: &Setup3<'_>,
+        setup: &mut Setup3<'_>,
         on_progress: OnProgress<'_>,
     ) -> Result<(Vec<Probe>, Stats), FdtdError> {
         let instruction_set = self.instruction_set.resolve()?.set();
@@ -68,7 +77,8 @@ impl Fdtd {
         let wanted = asked.or_else(|| std::thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
         let threads = team::worthwhile_threads(model.grid.cell_count(), model.grid.cells[0], wanted);
         let shared = Shared::<T>::new(setup, instruction_set);
-        let (probes, wall) = team::run(setup, &shared, threads, on_progress)?;
+        let planes = team::planes(setup, &shared);
+        let (probes, wall) = team::run(setup, &shared, planes, threads, on_progress)?;
         let cell_steps = model.grid.cell_count() as u64 * setup.iterations as u64;
         let wall = Seconds(wall.as_secs_f64());
         Ok((probes, Stats { wall, cell_steps, bytes: 0, threads, instruction_set }))
@@ -155,7 +165,7 @@ pub fn predict_three(
     painted: &Painted3,
     threads: Option<NonZeroUsize>,
 ) -> Result<Prediction, FdtdError> {
-    let setup = Setup3::new(model, painted)?;
+    let setup = Setup3::new(model, Cow::Borrowed(painted))?;
     let bytes = bytes_needed(&setup, Precision::Single);
     let [nx, ny, nz] = model.grid.cells;
     let planes = nx.min((TRIAL_CELLS / (ny * nz)).max(4 * team::STAGES));

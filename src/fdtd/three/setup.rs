@@ -1,10 +1,12 @@
 //! A three-dimensional model checked and turned into numbers, before anything of its size is allocated.
 
+use std::borrow::Cow;
+
 use super::super::FdtdError;
 use super::super::coefficients::{Edge, Slab, check_electric, edge_of};
 use super::super::setup::node_in_grid;
 use crate::model::{
-    Axis, FaceMaterial, Model, Painted3, Source, check_absorbing_cells, check_grid, check_stability_factor,
+    Axis, FaceMaterial, Indices, Model, Painted3, Source, check_absorbing_cells, check_grid, check_stability_factor,
 };
 use crate::units::constants::{MU_0, Z0};
 
@@ -13,7 +15,7 @@ pub const OTHERS: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
 
 /// All that the planes are built from.
 pub struct Setup3<'a> {
-    pub painted: &'a Painted3,
+    pub painted: Cow<'a, Painted3>,
     pub edges: Vec<Edge>,
     /// `da`, `db` of each entry of the face palette.
     pub faces: Vec<[f64; 2]>,
@@ -40,7 +42,7 @@ impl<'a> Setup3<'a> {
     ///
     /// # Errors
     /// Whatever the solver cannot do, naming it.
-    pub fn new(model: &Model, painted: &'a Painted3) -> Result<Self, FdtdError> {
+    pub fn new(model: &Model, painted: Cow<'a, Painted3>) -> Result<Self, FdtdError> {
         check_model(model)?;
         let present = painted.cells_per_material(model.materials.len());
         for (material, _) in model.materials.iter().zip(present).filter(|(_, cells)| *cells > 0) {
@@ -53,7 +55,7 @@ impl<'a> Setup3<'a> {
             [(storage - loss) / (storage + loss), MU_0 / dt / (storage + loss)]
         };
         let drives = model.sources.iter().enumerate();
-        let drives = drives.map(|(index, source)| drive(model, painted, &edges, index + 1, source));
+        let drives = drives.map(|(index, source)| drive(model, &painted, &edges, index + 1, source));
         let receivers = model.receivers.iter().enumerate();
         let receivers = receivers.map(|(index, receiver)| {
             node_in_grid(model, receiver.position, || {
@@ -63,14 +65,22 @@ impl<'a> Setup3<'a> {
         Ok(Self {
             drives: drives.collect::<Result<_, _>>()?,
             receivers: receivers.collect::<Result<_, _>>()?,
-            painted,
             faces: painted.face_palette.iter().map(face).collect(),
-            slabs: slabs(model, painted),
+            slabs: slabs(model, &painted),
+            painted,
             edges,
             iterations: model.iterations(),
             dt,
             spacing: model.grid.spacing,
         })
+    }
+
+    /// Frees the lists of cells, edges and faces where nobody else holds them: once the planes are built, nothing needs them.
+    pub fn forget_painting(&mut self) {
+        if let Cow::Owned(painted) = &mut self.painted {
+            let none = || std::array::from_fn(|_| Indices::with_capacity(0));
+            (painted.solid, painted.edges, painted.faces) = (vec![], none(), none());
+        }
     }
 
     /// Whether any edge conducts.

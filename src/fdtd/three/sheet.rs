@@ -1,8 +1,10 @@
 //! Where the arrays live.
 //!
 //! Plane `i` holds `Ex (i+½, j, k)`, `Ey (i, j+½, k)`, `Ez (i, j, k+½)`, `Hx (i, j+½, k+½)`, `Hy (i+½, j, k+½)` and
-//! `Hz (i+½, j+½, k)`, each as a [`Sheet`] of rows along z, the contiguous axis. Row `j = -1` and node `k = -1` are padding,
-//! so is everything past the far walls; E there is set to zero after every step of its row, and H stays zero because E is.
+//! `Hz (i+½, j+½, k)`, each as a [`Sheet`] of rows along z, the contiguous axis. Row `j = -1` is padding, so is everything
+//! past the far walls; E there is set to zero after every step of its row, and H stays zero because E is. One row follows
+//! the other without a gap: the node after the last of a row is node 0 of the next, where Ex and Ey lie on a wall and are
+//! zero; what lies before node 0 is only ever taken for edges on that wall, which are then set to zero.
 //!
 //! Fields are held scaled, so that the step of H has no coefficient: E as the voltage along its edge, `E d` (V), and H as
 //! `H mu0 A/dt` with the area `A` of its face, also in V.
@@ -31,11 +33,11 @@ impl<T: Real> Sheet<T> {
     pub fn zeros(last: usize, width: usize) -> Self {
         let data = vec![T::default(); Self::length(last, width)];
         let to_border = data.as_ptr().align_offset(64).min(LANES);
-        Self { data, origin: to_border + LANES, stride: width + LANES }
+        Self { data, origin: to_border + LANES, stride: width }
     }
 
     fn length(last: usize, width: usize) -> usize {
-        (last + 2) * (width + LANES) + 2 * LANES
+        (last + 2) * width + 3 * LANES
     }
 
     /// Memory that [`Sheet::zeros`] takes, bytes.
@@ -78,9 +80,10 @@ mod tests {
         let width = padded(33);
         assert_eq!(width, 48);
         let mut sheet = Sheet::<f64>::zeros(3, width);
-        sheet.at_mut(1, 0, width + 1).fill(1.0);
-        let others = [sheet.south(1, 0, width + 1), sheet.at(2, 0, width), sheet.before(2, 0, width)];
+        sheet.at_mut(1, 0, width).fill(1.0);
+        let others = [sheet.south(1, 0, width), sheet.at(2, 0, width), sheet.at(3, 0, width + 1)];
         assert!(others.into_iter().flatten().all(|&v| v == 0.0));
+        assert_eq!(sheet.before(2, 0, 2), [1.0, 0.0]);
         assert_eq!(sheet.at(2, 0, 1).as_ptr() as usize % 64, 0);
         assert_eq!(Sheet::<f32>::zeros(3, width).at(1, 0, 1).as_ptr() as usize % 64, 0);
     }

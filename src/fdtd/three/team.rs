@@ -49,6 +49,16 @@ pub fn worthwhile_threads(cells: usize, planes: usize, wanted: NonZeroUsize) -> 
     wanted.get().min(cells / LEAST_CELLS_PER_THREAD).min(planes / (STAGES + 2)).max(1)
 }
 
+/// Builds the planes of a grid, and one beyond each outer wall across x; frees the painting, where it can, between what
+/// is read off it and the fields.
+pub fn planes<T: Number>(setup: &mut Setup3<'_>, shared: &Shared<T>) -> Vec<Plane<T>> {
+    let nx = setup.painted.cells[0];
+    let bare: Vec<_> = (0..nx).map(|i| Plane::new(setup, shared, i)).collect();
+    setup.forget_painting();
+    let inside = bare.into_iter().map(|plane| plane.add_fields(setup, shared));
+    std::iter::once(Plane::beyond(setup)).chain(inside).chain(std::iter::once(Plane::beyond(setup))).collect()
+}
+
 /// Runs all steps; returns what the receivers recorded and the wall time of the loop.
 ///
 /// # Errors
@@ -56,18 +66,14 @@ pub fn worthwhile_threads(cells: usize, planes: usize, wanted: NonZeroUsize) -> 
 pub fn run<T: Number>(
     setup: &Setup3<'_>,
     shared: &Shared<T>,
+    planes: Vec<Plane<T>>,
     threads: usize,
     on_progress: OnProgress<'_>,
 ) -> Result<(Vec<Probe>, Duration), FdtdError> {
-    let nx = setup.painted.cells[0];
-    let planes = std::iter::once(Plane::beyond(setup))
-        .chain((0..nx).map(|i| Plane::new(setup, shared, i)))
-        .chain(std::iter::once(Plane::beyond(setup)))
-        .map(RwLock::new);
     let team = Team {
         setup,
         shared,
-        planes: planes.collect(),
+        planes: planes.into_iter().map(RwLock::new).collect(),
         done: (0..threads).map(|_| Done(AtomicUsize::new(0))).collect(),
         halt: AtomicBool::new(false),
         failure: Mutex::new(None),
