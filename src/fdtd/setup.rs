@@ -3,7 +3,8 @@
 use super::FdtdError;
 use super::coefficients::{Edge, Slab, edges, slabs};
 use crate::model::{
-    Axis, Model, Painted, Source, check_absorbing_cells, check_stability_factor, check_two_dimensional,
+    Axis, Model, Painted, Source, available_memory, check_absorbing_cells, check_recording, check_stability_factor,
+    check_two_dimensional,
 };
 use crate::units::constants::MU_0;
 
@@ -85,10 +86,11 @@ impl<'a> Setup<'a> {
 /// The checks that need no painting.
 ///
 /// # Errors
-/// A grid, a time step or absorbing cells that cannot be.
+/// A grid, a time step or absorbing cells that cannot be, samples beyond the memory.
 pub fn check_model(model: &Model) -> Result<(), FdtdError> {
     check_stability_factor(model)?;
     check_two_dimensional(model)?;
+    check_recording(model, available_memory())?;
     Ok(check_absorbing_cells(model)?)
 }
 

@@ -201,6 +201,16 @@ pub fn check_absorbing_cells(model: &Model) -> Result<(), CheckError> {
     Ok(())
 }
 
+/// Refuses more samples than the memory holds, before any is made: six components at each receiver, and the drive of each
+/// source in either precision.
+///
+/// # Errors
+/// When the samples alone need more memory than is available.
+pub fn check_recording(model: &Model, available: Option<u64>) -> Result<(), CheckError> {
+    let per_step = 48 * model.receivers.len() as u64 + 16 * model.sources.len() as u64;
+    check_memory(per_step.saturating_mul(model.iterations() as u64), available)
+}
+
 /// Memory that programs may still take, bytes; `None` where the system does not tell.
 pub fn available_memory() -> Option<u64> {
     let text = std::fs::read_to_string("/proc/meminfo").ok()?;
@@ -286,6 +296,19 @@ mod tests {
             model.stability_factor = factor;
             assert_eq!(check_stability_factor(&model).is_ok(), fine, "{factor}");
         }
+    }
+
+    /// A billion steps at one receiver and one source: 64 GB of samples, whatever the grid.
+    #[test]
+    fn samples_beyond_the_memory_are_refused() {
+        let mut model = model(0.002, Material::dielectric("stone", 6.0, 0.0));
+        model.receivers.push(crate::model::Receiver { position: [0.0; 3], name: None });
+        model.time_window = TimeWindow::Iterations(1_000_000_000);
+        assert_eq!(
+            check_recording(&model, Some(8 << 30)),
+            Err(CheckError::Memory { needed: 64_000_000_000, available: 8 << 30 })
+        );
+        assert!(check_recording(&model, Some(64_000_000_000)).is_ok() && check_recording(&model, None).is_ok());
     }
 
     #[test]

@@ -6,7 +6,8 @@ use super::super::FdtdError;
 use super::super::coefficients::{Edge, Slab, check_electric, edge_of};
 use super::super::setup::node_in_grid;
 use crate::model::{
-    Axis, FaceMaterial, Indices, Model, Painted3, Source, check_absorbing_cells, check_grid, check_stability_factor,
+    Axis, FaceMaterial, Indices, Model, Painted3, Source, available_memory, check_absorbing_cells, check_grid,
+    check_recording, check_stability_factor,
 };
 use crate::units::constants::{MU_0, Z0};
 
@@ -143,10 +144,11 @@ fn on_wall(cells: [usize; 3], axis: usize, node: [usize; 3]) -> bool {
 /// The checks that need no painting.
 ///
 /// # Errors
-/// A grid, a time step or absorbing cells that cannot be.
+/// A grid, a time step or absorbing cells that cannot be, samples beyond the memory.
 pub fn check_model(model: &Model) -> Result<(), FdtdError> {
     check_stability_factor(model)?;
     check_grid(&model.grid)?;
+    check_recording(model, available_memory())?;
     Ok(check_absorbing_cells(model)?)
 }
 

@@ -159,7 +159,7 @@ fn receiver(model: &mut Model, command: &Command<'_>, notes: &mut Vec<Note>) -> 
     Ok(())
 }
 
-/// The most receivers that one `#rx_array` may make.
+/// The most receivers that a file may make with `#rx_array`.
 const MOST_RECEIVERS: f64 = 1e6;
 
 /// Receivers on a lattice of nodes, z fastest. Both corners are nodes of it where the steps divide the distance; a step of
@@ -170,7 +170,8 @@ fn receiver_array(model: &mut Model, command: &Command<'_>) -> Result<(), Proble
     inside(model, "receiver", lower)?;
     inside(model, "receiver", upper)?;
     let grid = model.grid;
-    let mut lattice: [Vec<i64>; 3] = Default::default();
+    // First and last node and step; counted before a receiver is made, for a domain may have billions of nodes.
+    let (mut lattice, mut count) = ([(0i64, 0i64, 1usize); 3], 1.0);
     for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
         let (low, high) = (grid.node(axis, lower[axis]), grid.node(axis, upper[axis]));
         if low > high {
@@ -179,14 +180,16 @@ fn receiver_array(model: &mut Model, command: &Command<'_>) -> Result<(), Proble
         let step = grid.node(axis, steps[axis]);
         p.check("the step", steps[axis], steps[axis] >= 0.0, "0 or more")?;
         p.check("the step", steps[axis], step > 0 || low == high || steps[axis] == 0.0, "at least one cell")?;
-        lattice[axis] = if step == 0 { vec![low] } else { (low..=high).step_by(step as usize).collect() };
+        lattice[axis] = if step == 0 { (low, low, 1) } else { (low, high, step as usize) };
+        let (first, last, step) = lattice[axis];
+        count *= (((last - first) as usize) / step + 1) as f64;
     }
-    let [xs, ys, zs] = &lattice;
-    let count = xs.len() as f64 * ys.len() as f64 * zs.len() as f64;
-    p.check("the number of receivers", count, count <= MOST_RECEIVERS, "at most 1e6")?;
-    for &i in xs {
-        for &j in ys {
-            for &k in zs {
+    let all = model.receivers.len() as f64 + count;
+    p.check("the number of receivers", all, all <= MOST_RECEIVERS, "at most 1e6")?;
+    let [xs, ys, zs] = lattice.map(|(first, last, step)| (first..=last).step_by(step));
+    for i in xs {
+        for j in ys.clone() {
+            for k in zs.clone() {
                 let node = [i, j, k];
                 let position = std::array::from_fn(|axis| node[axis] as f64 * grid.spacing[axis]);
                 model.receivers.push(Receiver { position, name: None });
