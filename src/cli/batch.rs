@@ -66,6 +66,9 @@ pub fn run_many(args: &RunArgs) -> Result<(), CliError> {
                     }
                     let mut command = Command::new(&program);
                     command.arg("run").arg(target).args(["--json", "--solver", args.solver.name()]);
+                    if let Some(order) = args.order {
+                        command.args(["--order", &order.to_string()]);
+                    }
                     command.args(["--precision", args.precision.name(), "--threads", &threads.to_string()]);
                     if args.force {
                         command.arg("--force");

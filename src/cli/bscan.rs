@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::cli::error::CliError;
-use crate::cli::folder::{self, RunRecord};
+use crate::cli::folder::RunRecord;
 use crate::cli::progress::Bar;
-use crate::cli::run::{Outcome, RunArgs, SolverName, built_in_solver, kept_or_refused, paths, record};
+use crate::cli::run::{Outcome, RunArgs, SolverName, built_in_solver, fingerprint, kept_or_refused, paths, record};
 use crate::cli::table::Report;
 use crate::fdtd::{Fdtd, Stats};
 use crate::forward::Progress;
@@ -74,8 +74,9 @@ pub fn run(args: &RunArgs, count: NonZeroUsize) -> Result<(), CliError> {
         ));
     }
     let (input, result) = paths(args, target)?;
-    let fingerprint = folder::model_fingerprint(&input)?;
-    let model = gprmax::read_model(&input)?;
+    let fingerprint = fingerprint(args, &input)?;
+    let mut model = gprmax::read_model(&input)?;
+    model.order = args.order.unwrap_or(model.order);
     if model.source_steps == [0.0; 3] && model.receiver_steps == [0.0; 3] {
         eprintln!("warning: without `#src_steps` and `#rx_steps` all traces are the same");
     }

@@ -148,6 +148,7 @@ fn run_args(target: &Path, solver: SolverName, force: bool) -> RunArgs {
         solver,
         threads: None,
         jobs: None,
+        order: None,
         precision: PrecisionName::Single,
         out: None,
         force,

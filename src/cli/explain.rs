@@ -66,6 +66,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), CliError> {
             "cells": model.grid.cells,
             "time_step_s": model.time_step(),
             "iterations": model.iterations(),
+            "order": model.order,
             "scene_effects": scene.iter().flat_map(scene_effects).map(|(name, on, reason)| serde_json::json!({
                 "name": name, "on": on, "reason": reason
             })).collect::<Vec<_>>(),
@@ -236,10 +237,11 @@ fn print_scene(scene: &Scene) {
 fn print_model(model: &Model) {
     let [nx, ny, nz] = model.grid.cells;
     println!(
-        "grid: {nx} x {ny} x {nz} cells of {} mm, {} steps of {:.4} ps\n",
+        "grid: {nx} x {ny} x {nz} cells of {} mm, {} steps of {:.4} ps, differences of order {}\n",
         model.grid.spacing.map(|d| format!("{}", 1e3 * d)).join(" x "),
         model.iterations(),
-        1e12 * model.time_step()
+        1e12 * model.time_step(),
+        model.order
     );
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::cli::error::CliError;
 use crate::cli::folder;
 use crate::files;
-use crate::model::{Effects, Model, Painted};
+use crate::model::{Effects, Model, Order, Painted};
 use crate::scene::{Arrivals, BulkPermittivity, FoulingReport, Layer, Scene, SceneSpec};
 
 /// Wall times of a build, s. The only figures of a folder that differ between two builds of the same scene.
@@ -84,6 +84,8 @@ pub struct Manifest {
     pub time_step: f64,
     /// Samples per trace.
     pub iterations: usize,
+    /// Order of the differences in space.
+    pub order: Order,
     /// What will be simulated, and why.
     pub effects: Effects,
     /// Wall times.
@@ -112,6 +114,7 @@ impl Manifest {
             cells: model.grid.cells,
             time_step: model.time_step(),
             iterations: model.iterations(),
+            order: model.order,
             effects: Effects::of(model, painted),
             seconds,
         }

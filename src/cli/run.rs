@@ -13,6 +13,7 @@ use crate::cli::folder::{self, RunRecord};
 use crate::cli::progress::Bar;
 use crate::fdtd::{Fdtd, Precision};
 use crate::gprmax;
+use crate::model::Order;
 
 /// Simulate folders written by `build`, or anybody's gprMax input files.
 #[derive(Debug, Clone, Args)]
@@ -33,6 +34,9 @@ pub struct RunArgs {
     /// Floating-point numbers of the fields.
     #[arg(long, value_enum, default_value = "single")]
     pub precision: PrecisionName,
+    /// Order of the differences in space, 2 or 4 [default: what the file asks for, else 2, as gprMax].
+    #[arg(long, value_name = "2|4")]
+    pub order: Option<Order>,
     /// Result file, for a single target [default: FOLDER/fdtd.h5 or FOLDER/gprmax.h5, FILE.h5 beside FILE.in].
     #[arg(long, value_name = "FILE.h5")]
     pub out: Option<PathBuf>,
@@ -135,7 +139,7 @@ pub fn run(args: &RunArgs) -> Result<(), CliError> {
 /// When the target cannot be read, the result may not be overwritten, or the solver fails.
 pub fn run_one(args: &RunArgs, target: &Path) -> Result<Outcome, CliError> {
     let (input, result) = paths(args, target)?;
-    let fingerprint = folder::model_fingerprint(&input)?;
+    let fingerprint = fingerprint(args, &input)?;
     if let Some(record) = kept_or_refused(args, &result, &fingerprint)? {
         return Ok(Outcome { target: target.into(), result, kept: true, record });
     }
@@ -147,6 +151,15 @@ pub fn run_one(args: &RunArgs, target: &Path) -> Result<Outcome, CliError> {
     let record = record(args, &fingerprint, started, loop_seconds);
     record.write_beside(&result)?;
     Ok(Outcome { target: target.into(), result, kept: false, record })
+}
+
+/// The fingerprint of what is run: the model's files, and the order where it is not left to them.
+pub(super) fn fingerprint(args: &RunArgs, input: &Path) -> Result<String, CliError> {
+    let files = folder::model_fingerprint(input)?;
+    Ok(match args.order {
+        Some(order) => format!("{files}, order {order}"),
+        None => files,
+    })
 }
 
 /// The record of a result that is there and is the one asked for; none where there is no result or it may be overwritten.
@@ -255,13 +268,19 @@ fn run_fdtd(args: &RunArgs, input: &Path, result: &Path) -> Result<Option<f64>, 
         eprintln!("note: {note}");
     }
     let bar = Bar::new("simulating");
-    let (traces, stats) = built_in_solver(args).solve_stats(&read.model, &|progress| bar.update(progress))?;
+    let mut model = read.model;
+    model.order = args.order.unwrap_or(model.order);
+    let (traces, stats) = built_in_solver(args).solve_stats(&model, &|progress| bar.update(progress))?;
     drop(bar);
-    gprmax::write_traces(result, &traces, &read.model)?;
+    gprmax::write_traces(result, &traces, &model)?;
     Ok(Some(stats.wall.si()))
 }
 
 fn run_gprmax(args: &RunArgs, input: &Path, result: &Path) -> Result<Option<f64>, CliError> {
+    let order = args.order.map_or_else(|| gprmax::read_order(input), Ok)?;
+    if order != Order::Second {
+        return Err(gprmax::RunError::Order { order }.into());
+    }
     let solver = gprmax_solver(args.gprmax_python.as_deref(), args.precision, args.threads)?;
     let bar = Bar::new("gprMax");
     let run = solver.run_file(input, result, &|progress| bar.update(progress))?;

@@ -6,6 +6,7 @@ use clap::{Args, ValueEnum};
 
 use crate::cli::error::CliError;
 use crate::cli::folder;
+use crate::model::Order;
 use crate::packing::{ClassReading, Grading, PackingError};
 use crate::scene::{
     EquivalentStone, FoulingAmount, FoulingSpec, GeometryKind, GradingSpec, PackingMethod, SceneSpec, Smoothing,
@@ -61,6 +62,9 @@ pub struct SceneArgs {
     /// Where materials meet: a staircase, each edge the mean of its four cells, or each cell the mean over its area.
     #[arg(long, value_enum)]
     pub smoothing: Option<SmoothingFlag>,
+    /// Order of the differences in space: 2, as gprMax [default], or 4 (built-in solver only).
+    #[arg(long, value_name = "2|4")]
+    pub order: Option<Order>,
 }
 
 /// See [`GeometryKind`].
@@ -133,6 +137,7 @@ impl SceneArgs {
         set(&mut spec.antenna.frequency, self.frequency);
         set(&mut spec.grid.cell, self.cell);
         set(&mut spec.grid.time_window, self.time_window);
+        set(&mut spec.grid.order, self.order);
         set(
             &mut spec.grid.geometry,
             self.geometry.map(|geometry| match geometry {

@@ -3,21 +3,28 @@
 //! A block is stepped several steps at a time, in one *pass* over its rows: when the front is at row `f`, step `s` of the
 //! pass takes row `f - s`, so a row goes through all steps while it is in the cache. In place this is exact: E of row `r`
 //! takes Hy of rows `r` and `r - 1` of the same step, which the next step reaches only after it, and Hy of row `r` takes E
-//! of rows `r` and `r + 1` of the step before, made just before at the same front.
+//! of rows `r` and `r + 1` of the step before, made just before at the same front. With differences of fourth order E of row
+//! `r` takes Hy of the rows `r - 2` to `r + 1` and Hy of row `r` takes E of the rows `r - 1` to `r + 2`: E follows H one row
+//! behind, and the next step follows three rows behind.
 //!
-//! A block stores as many rows of each neighbour as a pass has steps, and steps them too, one row fewer on each side in each
-//! step: what it knows of the neighbours at the beginning of a pass is enough for its own rows until the end. Each value is
-//! made by the same operations wherever it is made, so the bits do not depend on how the grid is cut.
+//! A block stores as many rows of each neighbour as a value moves in a pass, and steps them too, fewer of them on each side
+//! in each step: what it knows of the neighbours at the beginning of a pass is enough for its own rows until the end. Each
+//! value is made by the same operations wherever it is made, so the bits do not depend on how the grid is cut.
+//!
+//! The outer walls conduct perfectly. Differences of fourth order see behind them the images of what lies before: E
+//! reversed, H the same. Along y the images stand in the padding of each row.
 
 use std::ops::Range;
 
 use super::coefficients::Slab;
+use super::conductor::{Cut, Cuts};
 use super::dispersion::{Dispersion, overlap};
-use super::kernel::{self, ColumnProfile, RowProfile};
+use super::kernel::{self, ColumnProfile, Difference, Fourth, RowProfile, Second};
 use super::layout::{LANES, Rows, padded_width};
 use super::reach::Cones;
 use super::real::Real;
 use super::setup::Setup;
+use crate::model::Order;
 
 /// One thread's share of the grid.
 pub struct Block<T> {
@@ -28,6 +35,8 @@ pub struct Block<T> {
     /// Row of the far wall.
     wall: usize,
     width: usize,
+    ny: usize,
+    order: Order,
     ratio: T,
     limit: T,
     ez: Rows<T>,
@@ -41,6 +50,10 @@ pub struct Block<T> {
     phi_e: Rows<T>,
     phi_h: Rows<T>,
     columns: Vec<Columns<T>>,
+    /// Present with differences of fourth order only.
+    cuts: Option<CutRows>,
+    /// The image of a row behind a wall.
+    image: Rows<T>,
     drives: ByRow<Drive<T>>,
     dispersion: Option<Dispersion<T>>,
     probes: ByRow<Probe>,
@@ -60,6 +73,14 @@ struct Columns<T> {
     h: [Vec<T>; 4],
     phi_e: Rows<T>,
     phi_h: Rows<T>,
+}
+
+/// The differences that conductors cut, by row.
+struct CutRows {
+    hx: ByRow<Cut>,
+    hy: ByRow<Cut>,
+    ez_x: ByRow<Cut>,
+    ez_y: ByRow<Cut>,
 }
 
 /// A source within the block.
@@ -104,20 +125,25 @@ impl<V> ByRow<V> {
     }
 
     #[inline(always)]
-    fn at(&mut self, row: usize) -> &mut [V] {
+    fn at(&self, row: usize) -> &[V] {
+        &self.things[self.of_row[row]..self.of_row[row + 1]]
+    }
+
+    #[inline(always)]
+    fn at_mut(&mut self, row: usize) -> &mut [V] {
         &mut self.things[self.of_row[row]..self.of_row[row + 1]]
     }
 }
 
 impl<T: Real> Block<T> {
-    /// Allocates the rows `own` of the grid, with `depth` rows of each neighbour.
+    /// Allocates the rows `own` of the grid, with `rim` rows of each neighbour: what a value moves in a pass.
     ///
-    /// Every block of the grid must have `depth` rows at least, but for one that has the grid to itself.
-    pub fn new(setup: &Setup<'_>, own: Range<usize>, depth: usize) -> Self {
+    /// Every block of the grid must have `rim` rows at least, but for one that has the grid to itself.
+    pub fn new(setup: &Setup<'_>, own: Range<usize>, rim: usize) -> Self {
         let [nx, ny] = setup.painted.cells_xy;
         let width = padded_width(ny);
-        let base = if own.start == 1 { 0 } else { own.start - depth };
-        let stored = (own.end + depth).min(nx + 1) - base;
+        let base = if own.start == 1 { 0 } else { own.start - rim };
+        let stored = (own.end + rim).min(nx + 1) - base;
         let mut cb = Rows::zeros(stored, width);
         let mut ca = setup.lossy().then(|| Rows::zeros(stored, width));
         for row in base.max(1)..(base + stored).min(nx) {
@@ -147,10 +173,19 @@ impl<T: Real> Block<T> {
             let samples = std::array::from_fn(|_| vec![0.0; setup.iterations]);
             (node[0] - base, Probe { receiver, j: node[1], samples })
         });
+        let cuts = (setup.order == Order::Fourth).then(|| {
+            let Cuts { hy, hx, ez_x, ez_y } = Cuts::new(setup, base, stored);
+            let by_row = |list| ByRow::new(stored, list);
+            CutRows { hx: by_row(hx), hy: by_row(hy), ez_x: by_row(ez_x), ez_y: by_row(ez_y) }
+        });
         Self {
             base,
             wall: nx,
             width,
+            ny,
+            order: setup.order,
+            image: Rows::zeros(usize::from(cuts.is_some()), width),
+            cuts,
             ratio: T::of(setup.ratio()),
             limit: T::of(setup.limit()),
             ez: Rows::zeros(stored, width),
@@ -181,69 +216,93 @@ impl<T: Real> Block<T> {
         self.beyond
     }
 
-    /// Makes the steps `first..first + count` of every row. `count` is not more than the block's depth.
+    /// Makes the steps `first..first + count` of every row; a value moves not more than the block's rim in them.
     ///
-    /// The lowest row of each step gets its H only: Hy for E of the row above.
+    /// The lowest rows of each step get their H only, for E of the rows above; so do the highest with differences of fourth
+    /// order.
     #[inline(always)]
     pub fn pass(&mut self, cones: &Cones, first: usize, count: usize) {
         let (begin, end) = (self.own.start, self.own.end);
-        let first_front = if begin == 1 { 0 } else { begin - count };
-        for front in first_front..end + count - 1 {
-            for s in 0..count.min(front + 1) {
-                let row = front - s;
-                let lowest = if begin == 1 { 0 } else { begin + s - count };
-                if row < lowest || row >= (end + count - 1 - s).min(self.wall) {
+        let reach = self.order.cells_per_step();
+        let behind = reach / 2;
+        let left = |s: usize| reach * (count - 1 - s);
+        let first_front = if begin == 1 { 0 } else { begin - left(0) - 1 - behind };
+        for front in first_front..end + left(0) + behind {
+            for s in 0..count.min(front / reach + 1) {
+                let (row, step) = (front - reach * s, first + s);
+                let lowest = if begin == 1 { 1 } else { begin - left(s) };
+                let highest = (end + left(s)).min(self.wall);
+                if row + 1 + behind < lowest || row >= highest + behind {
                     continue;
                 }
-                let (r, step) = (row - self.base, first + s);
-                if let Some((j, n)) = cones.span(row, step) {
-                    self.step_h(r, j, n);
-                    if row > lowest {
-                        self.step_e(r, j, n, step);
-                    }
+                if row < self.wall
+                    && let Some((j, n)) = cones.span(row, step)
+                {
+                    self.step_h(row, j, n);
                 }
-                self.record(r, step + 1);
+                let Some(row) = row.checked_sub(behind) else { continue };
+                if row >= lowest
+                    && row < highest
+                    && let Some((j, n)) = cones.span(row, step)
+                {
+                    self.step_e(row, j, n, step);
+                }
+                self.record(row - self.base, step + 1);
             }
         }
     }
 
     #[inline(always)]
-    fn step_h(&mut self, r: usize, j: usize, n: usize) {
-        let (ez, ez_south, ez_east) = (self.ez.at(r, j, n), self.ez.at(r, j - 1, n), self.ez.at(r + 1, j, n));
-        kernel::update_h(self.hx.at_mut(r, j, n), self.hy.at_mut(r, j, n), ez, ez_south, ez_east);
-        if let Some((slot, profile)) = self.absorb_h[r] {
-            kernel::absorb_row_h(self.hy.at_mut(r, j, n), ez, ez_east, self.phi_h.at_mut(slot, j, n), profile);
-        }
-        for c in &mut self.columns {
-            let Some((j, n)) = overlap(c.j, c.count, j, n) else { continue };
-            let (ez, ez_south) = (self.ez.at(r, j, n), self.ez.at(r, j - 1, n));
-            let phi = c.phi_h.at_mut(r, 1 + j - c.j, n);
-            kernel::absorb_columns_h(self.hx.at_mut(r, j, n), ez, ez_south, phi, profile(&c.h, j - c.j));
+    fn step_h(&mut self, row: usize, j: usize, n: usize) {
+        let r = row - self.base;
+        let Self { ez, hx, hy, phi_h, columns, absorb_h, image, .. } = self;
+        let absorb = absorb_h[r].map(|(slot, profile)| (phi_h.at_mut(slot, j, n), profile));
+        let row_h = RowOfH { hx: hx.at_mut(r, j, n), hy: hy.at_mut(r, j, n), absorb, columns, r, j };
+        let (low, east) = (ez.at(r, j, n), ez.at(r + 1, j, n));
+        let south = ez.at(r, j - 1, n);
+        match self.order {
+            Order::Second => row_h.step(Second { low, high: east }, Second { low: south, high: low }),
+            Order::Fourth => {
+                let (first, last) = (row == 0, row + 1 == self.wall);
+                if first || last {
+                    let inside = if first { east } else { low };
+                    for (image, &value) in image.at_mut(0, j, n).iter_mut().zip(inside) {
+                        *image = T::default() - value;
+                    }
+                }
+                let before = if first { image.at(0, j, n) } else { ez.at(r - 1, j, n) };
+                let behind = if last { image.at(0, j, n) } else { ez.at(r + 2, j, n) };
+                let along_y =
+                    Fourth { before: ez.two_before(r, j, n), low: south, high: low, behind: ez.at(r, j + 1, n) };
+                row_h.step(Fourth { before, low, high: east, behind }, along_y);
+                self.cut_h(r, j, n);
+                self.image_h(r);
+            }
         }
     }
 
     #[inline(always)]
-    fn step_e(&mut self, r: usize, j: usize, n: usize, step: usize) {
+    fn step_e(&mut self, row: usize, j: usize, n: usize, step: usize) {
+        let r = row - self.base;
         if let Some(dispersion) = &mut self.dispersion {
             dispersion.keep(r, j, self.ez.at(r, j, n));
         }
-        let ez = self.ez.at_mut(r, j, n);
-        let (hx, hx_north) = (self.hx.at(r, j, n), self.hx.at(r, j + 1, n));
-        let (hy, hy_west) = (self.hy.at(r, j, n), self.hy.at(r - 1, j, n));
-        let cb = self.cb.at(r, j, n);
-        match &self.ca {
-            None => kernel::update_e(ez, cb, self.ratio, hx, hx_north, hy, hy_west),
-            Some(ca) => kernel::update_e_lossy(ez, ca.at(r, j, n), cb, self.ratio, hx, hx_north, hy, hy_west),
-        }
-        if let Some((slot, profile)) = self.absorb_e[r] {
-            kernel::absorb_row_e(ez, cb, hy, hy_west, self.phi_e.at_mut(slot, j, n), profile);
-        }
-        for c in &mut self.columns {
-            let Some((j, n)) = overlap(c.j, c.count, j, n) else { continue };
-            let (hx, hx_north) = (self.hx.at(r, j, n), self.hx.at(r, j + 1, n));
-            let (ez, cb) = (self.ez.at_mut(r, j, n), self.cb.at(r, j, n));
-            let phi = c.phi_e.at_mut(r, 1 + j - c.j, n);
-            kernel::absorb_columns_e(ez, cb, self.ratio, hx, hx_north, phi, profile(&c.e, j - c.j));
+        let Self { ez, hx, hy, phi_e, columns, absorb_e, .. } = self;
+        let absorb = absorb_e[r].map(|(slot, profile)| (phi_e.at_mut(slot, j, n), profile));
+        let ca = self.ca.as_ref().map(|ca| ca.at(r, j, n));
+        let (cb, ratio) = (self.cb.at(r, j, n), self.ratio);
+        let row_e = RowOfE { ez: ez.at_mut(r, j, n), ca, cb, ratio, absorb, columns, r, j };
+        let (low, north) = (hx.at(r, j, n), hx.at(r, j + 1, n));
+        let (west, high) = (hy.at(r - 1, j, n), hy.at(r, j, n));
+        match self.order {
+            Order::Second => row_e.step(Second { low: west, high }, Second { low, high: north }),
+            Order::Fourth => {
+                let before = if row == 1 { west } else { hy.at(r - 2, j, n) };
+                let behind = if row + 1 == self.wall { high } else { hy.at(r + 1, j, n) };
+                let along_y = Fourth { before: hx.at(r, j - 1, n), low, high: north, behind: hx.at(r, j + 2, n) };
+                row_e.step(Fourth { before, low: west, high, behind }, along_y);
+                self.cut_e(r, j, n);
+            }
         }
         for drive in self.drives.at(r).iter().filter(|drive| (j..j + n).contains(&drive.j)) {
             let ez = self.ez.at_mut(r, drive.j, 1);
@@ -252,12 +311,101 @@ impl<T: Real> Block<T> {
         if let Some(dispersion) = &mut self.dispersion {
             dispersion.relax_row(r, j, self.ez.at_mut(r, j, n));
         }
+        if self.order == Order::Fourth {
+            self.image_e(r);
+        }
+    }
+
+    /// Writes the images of H behind the walls at both ends of a row.
+    #[inline(always)]
+    fn image_h(&mut self, r: usize) {
+        let (first, last) = (self.hx.at(r, 1, 1)[0], self.hx.at(r, self.ny, 1)[0]);
+        self.hx.at_mut(r, 0, 1)[0] = first;
+        self.hx.at_mut(r, self.ny + 1, 1)[0] = last;
+    }
+
+    /// Writes the images of E behind the walls at both ends of a row.
+    #[inline(always)]
+    fn image_e(&mut self, r: usize) {
+        let (first, last) = (self.ez.at(r, 1, 1)[0], self.ez.at(r, self.ny - 1, 1)[0]);
+        *self.ez.below_wall(r) = T::default() - first;
+        self.ez.at_mut(r, self.ny + 1, 1)[0] = T::default() - last;
+    }
+
+    /// Takes out of H what came through conductors, and puts in what their images give.
+    #[inline(always)]
+    fn cut_h(&mut self, r: usize, j: usize, n: usize) {
+        let Self { ez, hx, hy, phi_h, columns, absorb_h, .. } = self;
+        let Some(cuts) = &self.cuts else { return };
+        let part = T::of(1.0 / 24.0);
+        for cut in cuts.hx.at(r).iter().filter(|cut| (j..j + n).contains(&cut.j)) {
+            let f = ez.two_before(r, cut.j, 4);
+            let high = if cut.high { f[1] + f[3] } else { T::default() };
+            let low = if cut.low { f[0] + f[2] } else { T::default() };
+            let more = part * (high - low);
+            let field = &mut hx.at_mut(r, cut.j, 1)[0];
+            *field = *field - more;
+            for c in columns.iter_mut().filter(|c| (c.j..c.j + c.count).contains(&cut.j)) {
+                let at = cut.j - c.j;
+                *field = *field - c.h[0][at] * more;
+                let phi = &mut c.phi_h.at_mut(r, 1 + at, 1)[0];
+                *phi = *phi - c.h[3][at] * more;
+            }
+        }
+        for cut in cuts.hy.at(r).iter().filter(|cut| (j..j + n).contains(&cut.j)) {
+            let f = |row: usize| ez.at(row, cut.j, 1)[0];
+            let high = if cut.high { f(r) + f(r + 2) } else { T::default() };
+            let low = if cut.low { f(r - 1) + f(r + 1) } else { T::default() };
+            let more = part * (high - low);
+            let field = &mut hy.at_mut(r, cut.j, 1)[0];
+            *field = *field + more;
+            if let Some((slot, p)) = absorb_h[r] {
+                *field = *field + p.ra_less_one * more;
+                let phi = &mut phi_h.at_mut(slot, cut.j, 1)[0];
+                *phi = *phi - p.rf * more;
+            }
+        }
+    }
+
+    /// As [`Block::cut_h`], for E.
+    #[inline(always)]
+    fn cut_e(&mut self, r: usize, j: usize, n: usize) {
+        let Self { ez, hx, hy, cb, phi_e, columns, absorb_e, ratio, .. } = self;
+        let Some(cuts) = &self.cuts else { return };
+        let part = T::of(1.0 / 24.0);
+        for cut in cuts.ez_y.at(r).iter().filter(|cut| (j..j + n).contains(&cut.j)) {
+            let h = hx.at(r, cut.j - 1, 4);
+            let high = if cut.high { h[3] - h[2] } else { T::default() };
+            let low = if cut.low { h[1] - h[0] } else { T::default() };
+            let more = part * (high + low);
+            let (field, cb) = (&mut ez.at_mut(r, cut.j, 1)[0], cb.at(r, cut.j, 1)[0]);
+            *field = *field - cb * (*ratio * more);
+            for c in columns.iter_mut().filter(|c| (c.j..c.j + c.count).contains(&cut.j)) {
+                let at = cut.j - c.j;
+                *field = *field - cb * (*ratio * (c.e[0][at] * more));
+                let phi = &mut c.phi_e.at_mut(r, 1 + at, 1)[0];
+                *phi = *phi - c.e[3][at] * more;
+            }
+        }
+        for cut in cuts.ez_x.at(r).iter().filter(|cut| (j..j + n).contains(&cut.j)) {
+            let h = |row: usize| hy.at(row, cut.j, 1)[0];
+            let high = if cut.high { h(r + 1) - h(r) } else { T::default() };
+            let low = if cut.low { h(r - 1) - h(r - 2) } else { T::default() };
+            let more = part * (high + low);
+            let (field, cb) = (&mut ez.at_mut(r, cut.j, 1)[0], cb.at(r, cut.j, 1)[0]);
+            *field = *field + cb * more;
+            if let Some((slot, p)) = absorb_e[r] {
+                *field = *field + cb * (p.ra_less_one * more);
+                let phi = &mut phi_e.at_mut(slot, cut.j, 1)[0];
+                *phi = *phi - p.rf * more;
+            }
+        }
     }
 
     /// Takes the samples of a row's receivers.
     #[inline(always)]
     fn record(&mut self, r: usize, sample: usize) {
-        for probe in self.probes.at(r) {
+        for probe in self.probes.at_mut(r) {
             let ez = self.ez.at(r, probe.j, 1)[0];
             let values = [ez, self.hx.at(r, probe.j + 1, 1)[0], self.hy.at(r, probe.j, 1)[0]];
             for (samples, value) in probe.samples.iter_mut().zip(values) {
@@ -270,24 +418,28 @@ impl<T: Real> Block<T> {
     }
 
     /// Copies the state of the first or the last rows of the block's own into a letter.
-    pub fn pack(&mut self, last: bool, depth: usize, letter: &mut Vec<T>) {
+    pub fn pack(&mut self, last: bool, rim: usize, letter: &mut Vec<T>) {
         letter.clear();
-        let begin = if last { self.own.end - depth } else { self.own.start };
-        for row in begin..begin + depth {
+        let begin = if last { self.own.end - rim } else { self.own.start };
+        for row in begin..begin + rim {
             self.each_of_row(row - self.base, &mut |values| letter.extend_from_slice(values));
         }
     }
 
     /// Takes the state of the neighbour's rows next to the block's last or first row from a letter.
-    pub fn unpack(&mut self, last: bool, depth: usize, letter: &[T]) {
-        let begin = if last { self.own.end } else { self.own.start - depth };
+    pub fn unpack(&mut self, last: bool, rim: usize, letter: &[T]) {
+        let begin = if last { self.own.end } else { self.own.start - rim };
         let mut rest = letter;
-        for row in begin..begin + depth {
+        for row in begin..begin + rim {
             self.each_of_row(row - self.base, &mut |values| {
                 let (mine, others) = rest.split_at(values.len());
                 values.copy_from_slice(mine);
                 rest = others;
             });
+            if self.order == Order::Fourth {
+                self.image_h(row - self.base);
+                self.image_e(row - self.base);
+            }
         }
     }
 
@@ -318,6 +470,65 @@ impl<T: Real> Block<T> {
             let j = ez.iter().position(|v| v.is_beyond(self.limit))?;
             Some(Beyond { step, node: [row, j + 1], value: ez[j].double() })
         })
+    }
+}
+
+/// A row of H with all that changes in its step, from node `j` on.
+struct RowOfH<'a, T> {
+    hx: &'a mut [T],
+    hy: &'a mut [T],
+    absorb: Option<(&'a mut [T], RowProfile<T>)>,
+    columns: &'a mut [Columns<T>],
+    r: usize,
+    j: usize,
+}
+
+impl<T: Real> RowOfH<'_, T> {
+    #[inline(always)]
+    fn step<D: Difference<T>>(self, along_x: D, along_y: D) {
+        let Self { hx, hy, absorb, columns, r, j: from } = self;
+        kernel::update_h(hx, hy, along_x, along_y);
+        if let Some((phi, profile)) = absorb {
+            kernel::absorb_row_h(hy, along_x, phi, profile);
+        }
+        for c in columns {
+            let Some((j, n)) = overlap(c.j, c.count, from, hx.len()) else { continue };
+            let phi = c.phi_h.at_mut(r, 1 + j - c.j, n);
+            let along_y = along_y.part(j - from, n);
+            kernel::absorb_columns_h(&mut hx[j - from..][..n], along_y, phi, profile(&c.h, j - c.j));
+        }
+    }
+}
+
+/// A row of E with all that changes in its step, from node `j` on.
+struct RowOfE<'a, T> {
+    ez: &'a mut [T],
+    ca: Option<&'a [T]>,
+    cb: &'a [T],
+    ratio: T,
+    absorb: Option<(&'a mut [T], RowProfile<T>)>,
+    columns: &'a mut [Columns<T>],
+    r: usize,
+    j: usize,
+}
+
+impl<T: Real> RowOfE<'_, T> {
+    #[inline(always)]
+    fn step<D: Difference<T>>(self, along_x: D, along_y: D) {
+        let Self { ez, ca, cb, ratio, absorb, columns, r, j: from } = self;
+        match ca {
+            None => kernel::update_e(ez, cb, ratio, along_x, along_y),
+            Some(ca) => kernel::update_e_lossy(ez, ca, cb, ratio, along_x, along_y),
+        }
+        if let Some((phi, profile)) = absorb {
+            kernel::absorb_row_e(ez, cb, along_x, phi, profile);
+        }
+        for c in columns {
+            let Some((j, n)) = overlap(c.j, c.count, from, ez.len()) else { continue };
+            let phi = c.phi_e.at_mut(r, 1 + j - c.j, n);
+            let (ez, cb, along_y) = (&mut ez[j - from..][..n], &cb[j - from..][..n], along_y.part(j - from, n));
+            kernel::absorb_columns_e(ez, cb, ratio, along_y, phi, profile(&c.e, j - c.j));
+        }
     }
 }
 

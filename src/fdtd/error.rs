@@ -2,7 +2,7 @@
 
 use super::instructions::InstructionSet;
 use crate::forward::ForwardError;
-use crate::model::{Axis, CheckError, PaintError};
+use crate::model::{Axis, CheckError, Order, PaintError};
 
 /// Why the embedded solver gave no traces.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -13,6 +13,14 @@ pub enum FdtdError {
     /// The model cannot be run on this grid or machine.
     #[error(transparent)]
     Check(#[from] CheckError),
+    /// Differences of fourth order in three dimensions.
+    #[error(
+        "in three dimensions there are differences of order 2 only, but the model asks for {order}\n\nhint: `--order 2`"
+    )]
+    OrderInThree {
+        /// What the model asks for.
+        order: Order,
+    },
     /// A magnetic material.
     #[error(
         "`{material}` is magnetic (mu_r {mu_r}, magnetic loss {sigma_magnetic} ohm/m), which the embedded solver does not \

@@ -49,6 +49,18 @@ impl<T: Real> Rows<T> {
         &self.data[self.origin + row * self.stride + j..][..count]
     }
 
+    /// `count` nodes of a row from the second node before `j` on; node -1 is padding.
+    #[inline(always)]
+    pub fn two_before(&self, row: usize, j: usize, count: usize) -> &[T] {
+        &self.data[self.origin + row * self.stride + j - 2..][..count]
+    }
+
+    /// Node -1 of a row.
+    #[inline(always)]
+    pub fn below_wall(&mut self, row: usize) -> &mut T {
+        &mut self.data[self.origin + row * self.stride - 1]
+    }
+
     /// `count` nodes of a row from node `j` on.
     #[inline(always)]
     pub fn at_mut(&mut self, row: usize, j: usize, count: usize) -> &mut [T] {

@@ -14,6 +14,7 @@
 
 mod block;
 mod coefficients;
+mod conductor;
 mod dispersion;
 mod error;
 mod instructions;

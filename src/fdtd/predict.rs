@@ -5,11 +5,12 @@ use std::ops::ControlFlow;
 
 use super::FdtdError;
 use super::coefficients::Edge;
+use super::conductor::Cuts;
 use super::layout::{Rows, padded_width};
 use super::reach::Cones;
 use super::setup::Setup;
 use super::solver::{Fdtd, Precision, Stepping};
-use crate::model::{DebyePole, Grid, Material, Model, Object, Painted, TimeWindow, paint};
+use crate::model::{DebyePole, Grid, Material, Model, Object, Order, Painted, TimeWindow, paint};
 
 /// What a run will cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -77,6 +78,7 @@ fn trial(fdtd: &Fdtd, model: &Model, lossy: bool, poles: usize) -> Result<f64, F
     }
     even.pml_cells = Some(absorbing);
     even.threads = model.threads;
+    even.order = model.order;
     let mut material = Material::dielectric("trial", 4.0, if lossy { 0.01 } else { 0.0 });
     material.poles = (0..poles).map(|pole| DebyePole { delta_eps: 1.0, tau: 1e-11 * (pole + 1) as f64 }).collect();
     material.averagable = poles == 0;
@@ -133,6 +135,7 @@ fn bytes<T: super::real::Real>(setup: &Setup<'_>) -> u64 {
     let [x0, y0, x1, y1] = &setup.slabs;
     let columns: u64 = [y0, y1].iter().map(|slab| 2 * Rows::<T>::bytes(nx, slab.cells)).sum();
     let poles: usize = poles_per_node(setup).iter().enumerate().map(|(poles, nodes)| poles * nodes).sum();
+    let cuts = if setup.order == Order::Fourth { Cuts::new(setup, 0, nx).bytes() } else { 0 };
     let samples = setup.receivers.len() * 6 * 8 + setup.drives.len() * (8 + size_of::<T>());
     arrays * Rows::<T>::bytes(nx + 1, width)
         + 2 * Rows::<T>::bytes(x0.cells + x1.cells, width)
@@ -140,4 +143,5 @@ fn bytes<T: super::real::Real>(setup: &Setup<'_>) -> u64 {
         + (poles * size_of::<T>()) as u64
         + (samples * setup.iterations) as u64
         + (setup.edges.len() * size_of::<Edge>()) as u64
+        + cuts
 }

@@ -3,8 +3,8 @@
 use super::FdtdError;
 use super::coefficients::{Edge, Slab, edges, slabs};
 use crate::model::{
-    Axis, Model, Painted, Source, available_memory, check_absorbing_cells, check_recording, check_stability_factor,
-    check_two_dimensional,
+    Axis, Model, Order, Painted, Source, available_memory, check_absorbing_cells, check_recording,
+    check_stability_factor, check_two_dimensional,
 };
 use crate::units::constants::MU_0;
 
@@ -17,6 +17,7 @@ pub struct Setup<'a> {
     pub drives: Vec<NodeDrive>,
     /// Node of each receiver.
     pub receivers: Vec<[usize; 3]>,
+    pub order: Order,
     pub iterations: usize,
     pub dt: f64,
     pub spacing: [f64; 3],
@@ -52,6 +53,7 @@ impl<'a> Setup<'a> {
             painted,
             slabs: slabs(model, painted),
             edges,
+            order: model.order,
             iterations: model.iterations(),
             dt: model.time_step(),
             spacing: model.grid.spacing,

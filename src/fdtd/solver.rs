@@ -176,7 +176,7 @@ impl Fdtd {
         let threads = self.threads_for(model);
         let cones = Cones::new(setup, stepping.skip);
         let automatic = || team::steps_per_pass::<T>(setup, threads);
-        let most = model.grid.cells[0] - 1;
+        let most = (model.grid.cells[0] - 1).div_ceil(setup.order.cells_per_step());
         let depth = stepping.steps_per_pass.map_or_else(automatic, |asked| asked.get().min(most));
         let blocks: Vec<Block<T>> = team::blocks(setup, &cones, threads, depth);
         let threads = blocks.len();

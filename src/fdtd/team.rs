@@ -48,6 +48,8 @@ struct Team<'a, T> {
     cones: &'a Cones,
     /// Steps per pass.
     depth: usize,
+    /// Rows of a neighbour that a block stores.
+    rim: usize,
     announced: Vec<Announced>,
     letterboxes: Vec<[Letterbox<T>; 2]>,
     halt: AtomicBool,
@@ -68,18 +70,25 @@ pub fn worthwhile_threads(cells: usize, rows: usize, wanted: NonZeroUsize) -> us
 pub fn steps_per_pass<T: Real>(setup: &Setup<'_>, threads: usize) -> usize {
     let [nx, ny] = setup.painted.cells_xy;
     let arrays = if setup.lossy() { 5 } else { 4 };
-    let row = arrays * padded_width(ny) * size_of::<T>();
+    let reach = setup.order.cells_per_step();
+    let row = reach * arrays * padded_width(ny) * size_of::<T>();
     let by_cache = (CACHE_FOR_A_PASS / row).max(4);
-    let by_rows = if threads == 1 { MOST_STEPS_PER_PASS } else { nx / threads / 10 };
+    let by_rows = if threads == 1 { MOST_STEPS_PER_PASS } else { nx / threads / (10 * reach) };
     by_cache.min(by_rows).clamp(1, MOST_STEPS_PER_PASS)
 }
 
-/// Cuts the rows `1..nx` of the grid into blocks of nearly equal work, of `depth` rows at least.
+/// Rows that a value moves in a pass of `depth` steps.
+fn rim(setup: &Setup<'_>, depth: usize) -> usize {
+    setup.order.cells_per_step() * depth
+}
+
+/// Cuts the rows `1..nx` of the grid into blocks of nearly equal work, each with rows enough for its neighbours' rims.
 ///
 /// There are fewer blocks than `threads` where rows are too few.
 pub fn blocks<T: Real>(setup: &Setup<'_>, cones: &Cones, threads: usize, depth: usize) -> Vec<Block<T>> {
     let nx = setup.painted.cells_xy[0];
-    let threads = threads.min((nx - 1) / depth.max(1)).max(1);
+    let rim = rim(setup, depth);
+    let threads = threads.min((nx - 1) / rim.max(1)).max(1);
     let (mut work, _) = cones.work_per_row();
     work.pop();
     let total = work.iter().sum::<u64>() as f64;
@@ -93,10 +102,10 @@ pub fn blocks<T: Real>(setup: &Setup<'_>, cones: &Cones, threads: usize, depth: 
         }
         // Rows without work are shared out evenly.
         let wanted = if total > 0.0 { row } else { 1 + (nx - 1) * block / threads };
-        bounds.push(wanted.clamp(bounds[block - 1] + depth, nx - (threads - block) * depth));
+        bounds.push(wanted.clamp(bounds[block - 1] + rim, nx - (threads - block) * rim));
     }
     bounds.push(nx);
-    bounds.windows(2).map(|ends| Block::new(setup, ends[0]..ends[1], depth)).collect()
+    bounds.windows(2).map(|ends| Block::new(setup, ends[0]..ends[1], rim)).collect()
 }
 
 /// Runs all steps, `depth` per pass; returns what the receivers recorded and the wall time of the loop.
@@ -111,14 +120,14 @@ pub fn run<T: Real>(
     sweep: Sweep,
     on_progress: OnProgress<'_>,
 ) -> Result<(Vec<Probe>, Duration), FdtdError> {
-    let count = blocks.len();
+    let (count, rim) = (blocks.len(), rim(setup, depth));
     let mut letterboxes = Vec::with_capacity(count);
     for (me, block) in blocks.iter_mut().enumerate() {
         // Packed once already, so that each letter has the room it needs.
         let mut letter = |last, wanted| {
             let mut letter = vec![];
             if wanted {
-                block.pack(last, depth, &mut letter);
+                block.pack(last, rim, &mut letter);
             }
             Mutex::new(letter)
         };
@@ -128,6 +137,7 @@ pub fn run<T: Real>(
     let team = Team {
         cones,
         depth,
+        rim,
         announced: blocks.iter().map(|_| Announced(AtomicUsize::new(0))).collect(),
         letterboxes,
         halt: AtomicBool::new(false),
@@ -234,13 +244,13 @@ impl<T: Real> Team<'_, T> {
             if !self.wait(me - 1, pass) {
                 return false;
             }
-            block.unpack(false, self.depth, &lock(&self.letterboxes[me - 1][pass % 2].last));
+            block.unpack(false, self.rim, &lock(&self.letterboxes[me - 1][pass % 2].last));
         }
         if pass > 0 && me + 1 < self.announced.len() {
             if !self.wait(me + 1, pass) {
                 return false;
             }
-            block.unpack(true, self.depth, &lock(&self.letterboxes[me + 1][pass % 2].first));
+            block.unpack(true, self.rim, &lock(&self.letterboxes[me + 1][pass % 2].first));
         }
         !self.halt.load(Ordering::Relaxed)
     }
@@ -248,10 +258,10 @@ impl<T: Real> Team<'_, T> {
     fn send(&self, me: usize, pass: usize, block: &mut Block<T>) {
         let Letterbox { first, last } = &self.letterboxes[me][pass % 2];
         if me > 0 {
-            block.pack(false, self.depth, &mut lock(first));
+            block.pack(false, self.rim, &mut lock(first));
         }
         if me + 1 < self.announced.len() {
-            block.pack(true, self.depth, &mut lock(last));
+            block.pack(true, self.rim, &mut lock(last));
         }
         self.announced[me].0.store(pass, Ordering::Release);
     }
@@ -291,7 +301,7 @@ mod tests {
     use super::*;
     use crate::fdtd::InstructionSet;
     use crate::model::{
-        Axis, DebyePole, Excitation, Grid, HertzianDipole, Material, MaterialId, Model, Object, Receiver, Source,
+        self, Axis, DebyePole, Excitation, Grid, HertzianDipole, Material, MaterialId, Model, Object, Receiver, Source,
         TimeWindow, Waveform, WaveformKind, paint,
     };
 
@@ -338,12 +348,15 @@ mod tests {
     /// along a diagonal.
     #[test]
     fn any_cut_gives_the_same_bits() {
-        let model = model(15, 9, 300);
-        let whole = go::<f32>(&model, PLAIN, 1.0).unwrap();
-        assert!(whole.iter().flatten().any(|v| *v != 0.0));
-        for (threads, depth) in [(1, 3), (1, 14), (2, 1), (2, 7), (3, 4), (7, 2), (14, 1)] {
-            let order = Order { threads, depth, ..PLAIN };
-            assert!(go::<f32>(&model, order, 1.0).unwrap() == whole, "{order:?}");
+        for order in [model::Order::Second, model::Order::Fourth] {
+            let mut model = model(15, 9, 300);
+            model.order = order;
+            let whole = go::<f32>(&model, PLAIN, 1.0).unwrap();
+            assert!(whole.iter().flatten().any(|v| *v != 0.0));
+            for (threads, depth) in [(1, 3), (1, 14), (2, 1), (2, 2), (2, 7), (3, 4), (4, 1), (7, 2), (14, 1)] {
+                let order = Order { threads, depth, ..PLAIN };
+                assert!(go::<f32>(&model, order, 1.0).unwrap() == whole, "{order:?} {:?}", model.order);
+            }
         }
     }
 
@@ -355,9 +368,11 @@ mod tests {
         let sources = prop::collection::vec((node.clone(), 0usize..60), 0..4);
         let receivers = prop::collection::vec(node, 0..4);
         let pml = prop::array::uniform4(0usize..4);
-        (2usize..40, 2usize..70, 0usize..160, objects, sources, receivers, pml).prop_map(
-            |(nx, ny, steps, objects, sources, receivers, pml)| {
+        let order = prop::sample::select(vec![model::Order::Second, model::Order::Fourth]);
+        (2usize..40, 2usize..70, 0usize..160, objects, sources, receivers, (pml, order)).prop_map(
+            |(nx, ny, steps, objects, sources, receivers, (pml, order))| {
                 let mut made = model(nx, ny, steps);
+                made.order = order;
                 made.grid.spacing[1] = 0.0025;
                 let [dx, dy, _] = made.grid.spacing;
                 let fits = |low: usize, high: usize, cells: usize| low + high < cells;
@@ -426,8 +441,11 @@ mod tests {
     /// A scheme made unstable (a step beyond the Courant limit by 5 %) is stopped, and the place is in the grid.
     #[test]
     fn a_diverging_run_is_stopped_at_a_place() {
-        for (threads, depth) in [(1, 1), (3, 8)] {
-            let model = model(40, 40, 100_000);
+        for (threads, depth, order) in
+            [(1, 1, model::Order::Second), (3, 8, model::Order::Second), (3, 4, model::Order::Fourth)]
+        {
+            let mut model = model(40, 40, 100_000);
+            model.order = order;
             match go::<f32>(&model, Order { threads, depth, ..PLAIN }, 1.1) {
                 Err(FdtdError::Diverged { step, i, j, value, .. }) => {
                     assert!((10..20_000).contains(&step), "{step}");

@@ -55,6 +55,7 @@ pub fn build_model(scene: &Scene) -> Result<Model, RasterError> {
         return Err(RasterError::TooManyCells { cell: spec.grid.cell.si(), nx, ny, limit: MOST_CELLS });
     }
     let mut model = Model::new(spec.title.clone(), placement.grid, TimeWindow::Seconds(spec.grid.time_window.si()));
+    model.order = spec.grid.order;
     model.pml_cells = Some(placement.absorbing_cells);
     let mut builder = Builder { model, averaging: spec.grid.smoothing != Smoothing::None, known: HashMap::new() };
     builder.tank(scene, &placement);

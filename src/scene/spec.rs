@@ -5,6 +5,7 @@ use std::path::Path;
 
 use crate::files;
 use crate::material::{FinesPassing, JudgedBy, MixingModel};
+use crate::model::{Order, WaveformKind};
 use crate::packing::{ClassReading, Grading, InputRule, PackingError};
 use crate::units::{Hertz, Metres, Seconds, Share};
 
@@ -234,7 +235,7 @@ pub struct AntennaSpec {
     /// Centre frequency.
     pub frequency: Hertz,
     /// Pulse.
-    pub waveform: crate::model::WaveformKind,
+    pub waveform: WaveformKind,
     /// Height above the bed's nominal surface.
     pub height: Metres,
     /// Distance between source and receiver. Assumed: not published; small, so that echoes come at normal incidence.
@@ -248,7 +249,7 @@ impl Default for AntennaSpec {
     fn default() -> Self {
         Self {
             frequency: Hertz(1e9),
-            waveform: crate::model::WaveformKind::Ricker,
+            waveform: WaveformKind::Ricker,
             height: Metres(0.40),
             separation: Metres(0.04),
             position: None,
@@ -292,6 +293,13 @@ pub struct GridSpec {
     pub geometry: GeometryKind,
     /// What happens where two materials meet.
     pub smoothing: Smoothing,
+    /// Order of the differences in space: 2, as gprMax, or 4.
+    #[serde(skip_serializing_if = "is_second")]
+    pub order: Order,
+}
+
+fn is_second(order: &Order) -> bool {
+    *order == Order::Second
 }
 
 impl Default for GridSpec {
@@ -302,6 +310,7 @@ impl Default for GridSpec {
             absorbing_cells: 10,
             geometry: GeometryKind::Voxels,
             smoothing: Smoothing::Edges,
+            order: Order::Second,
         }
     }
 }

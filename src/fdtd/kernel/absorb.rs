@@ -5,6 +5,7 @@
 //! doi:10.1109/TAP.2011.2180344, first order).
 
 use super::super::real::Real;
+use super::difference::Difference;
 
 /// The four coefficients of a row that lies within the absorbing cells at an end of x.
 #[derive(Debug, Clone, Copy)]
@@ -32,59 +33,58 @@ pub struct ColumnProfile<'a, T> {
     pub rf: &'a [T],
 }
 
-/// Corrects Hy of a row: `d = Ez_{i+1} - Ez_i`.
+/// Corrects Hy of a row by the difference of Ez along x.
 #[inline(always)]
-pub fn absorb_row_h<T: Real>(hy: &mut [T], ez: &[T], ez_east: &[T], phi: &mut [T], p: RowProfile<T>) {
+pub fn absorb_row_h<T: Real, D: Difference<T>>(hy: &mut [T], along_x: D, phi: &mut [T], p: RowProfile<T>) {
     let n = hy.len();
-    let (ez, ez_east, phi) = (&ez[..n], &ez_east[..n], &mut phi[..n]);
+    let (along_x, phi) = (along_x.part(0, n), &mut phi[..n]);
     for j in 0..n {
-        let d = ez_east[j] - ez[j];
+        let d = along_x.at(j);
         hy[j] = hy[j] + (p.ra_less_one * d + p.rb * phi[j]);
         phi[j] = p.re * phi[j] - p.rf * d;
     }
 }
 
-/// Corrects Ez of a row: `d = Hy_i - Hy_{i-1}`.
+/// Corrects Ez of a row by the difference of Hy along x.
 #[inline(always)]
-pub fn absorb_row_e<T: Real>(ez: &mut [T], cb: &[T], hy: &[T], hy_west: &[T], phi: &mut [T], p: RowProfile<T>) {
+pub fn absorb_row_e<T: Real, D: Difference<T>>(ez: &mut [T], cb: &[T], along_x: D, phi: &mut [T], p: RowProfile<T>) {
     let n = ez.len();
-    let (cb, hy, hy_west, phi) = (&cb[..n], &hy[..n], &hy_west[..n], &mut phi[..n]);
+    let (cb, along_x, phi) = (&cb[..n], along_x.part(0, n), &mut phi[..n]);
     for j in 0..n {
-        let d = hy[j] - hy_west[j];
+        let d = along_x.at(j);
         ez[j] = ez[j] + cb[j] * (p.ra_less_one * d + p.rb * phi[j]);
         phi[j] = p.re * phi[j] - p.rf * d;
     }
 }
 
-/// Corrects Hx at one end of a row: `d = Ez_j - Ez_{j-1}`.
+/// Corrects Hx at one end of a row by the difference of Ez along y.
 #[inline(always)]
-pub fn absorb_columns_h<T: Real>(hx: &mut [T], ez: &[T], ez_south: &[T], phi: &mut [T], p: ColumnProfile<'_, T>) {
+pub fn absorb_columns_h<T: Real, D: Difference<T>>(hx: &mut [T], along_y: D, phi: &mut [T], p: ColumnProfile<'_, T>) {
     let n = hx.len();
-    let (ez, ez_south, phi) = (&ez[..n], &ez_south[..n], &mut phi[..n]);
+    let (along_y, phi) = (along_y.part(0, n), &mut phi[..n]);
     let (ra_less_one, rb, re, rf) = (&p.ra_less_one[..n], &p.rb[..n], &p.re[..n], &p.rf[..n]);
     for j in 0..n {
-        let d = ez[j] - ez_south[j];
+        let d = along_y.at(j);
         hx[j] = hx[j] - (ra_less_one[j] * d + rb[j] * phi[j]);
         phi[j] = re[j] * phi[j] - rf[j] * d;
     }
 }
 
-/// Corrects Ez at one end of a row: `d = Hx_j - Hx_{j-1}`; `ratio = dx²/dy²` as in the plain step.
+/// Corrects Ez at one end of a row by the difference of Hx along y; `ratio = dx²/dy²` as in the plain step.
 #[inline(always)]
-pub fn absorb_columns_e<T: Real>(
+pub fn absorb_columns_e<T: Real, D: Difference<T>>(
     ez: &mut [T],
     cb: &[T],
     ratio: T,
-    hx: &[T],
-    hx_north: &[T],
+    along_y: D,
     phi: &mut [T],
     p: ColumnProfile<'_, T>,
 ) {
     let n = ez.len();
-    let (cb, hx, hx_north, phi) = (&cb[..n], &hx[..n], &hx_north[..n], &mut phi[..n]);
+    let (cb, along_y, phi) = (&cb[..n], along_y.part(0, n), &mut phi[..n]);
     let (ra_less_one, rb, re, rf) = (&p.ra_less_one[..n], &p.rb[..n], &p.re[..n], &p.rf[..n]);
     for j in 0..n {
-        let d = hx_north[j] - hx[j];
+        let d = along_y.at(j);
         ez[j] = ez[j] - cb[j] * (ratio * (ra_less_one[j] * d + rb[j] * phi[j]));
         phi[j] = re[j] * phi[j] - rf[j] * d;
     }

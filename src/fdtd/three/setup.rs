@@ -6,7 +6,7 @@ use super::super::FdtdError;
 use super::super::coefficients::{Edge, Slab, check_electric, edge_of};
 use super::super::setup::node_in_grid;
 use crate::model::{
-    Axis, FaceMaterial, Indices, Model, Painted3, Source, available_memory, check_absorbing_cells, check_grid,
+    Axis, FaceMaterial, Indices, Model, Order, Painted3, Source, available_memory, check_absorbing_cells, check_grid,
     check_recording, check_stability_factor,
 };
 use crate::units::constants::{MU_0, Z0};
@@ -147,6 +147,9 @@ fn on_wall(cells: [usize; 3], axis: usize, node: [usize; 3]) -> bool {
 /// A grid, a time step or absorbing cells that cannot be, samples beyond the memory.
 pub fn check_model(model: &Model) -> Result<(), FdtdError> {
     check_stability_factor(model)?;
+    if model.order != Order::Second {
+        return Err(FdtdError::OrderInThree { order: model.order });
+    }
     check_grid(&model.grid)?;
     check_recording(model, available_memory())?;
     Ok(check_absorbing_cells(model)?)

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::super::output::OutputError;
 use super::super::writer::WriteError;
 use crate::files::FileError;
+use crate::model::Order;
 
 /// Why a run of gprMax gave no traces.
 #[derive(Debug, thiserror::Error)]
@@ -45,6 +46,12 @@ pub enum RunError {
         input: PathBuf,
         /// A file with all that it printed.
         log: PathBuf,
+    },
+    /// Another scheme than gprMax's.
+    #[error("gprMax has differences of order 2 only, but the model asks for {order}\n\nhint: `--order 2`")]
+    Order {
+        /// What the model asks for.
+        order: Order,
     },
     /// The caller asked to stop.
     #[error("stopped on request")]

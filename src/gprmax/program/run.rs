@@ -15,7 +15,7 @@ use super::process::{Event, run};
 use super::progress::{loop_seconds, progress};
 use crate::files::FileError;
 use crate::forward::{Forward, ForwardError, OnProgress, Progress};
-use crate::model::Model;
+use crate::model::{Model, Order};
 use crate::trace::Traces;
 
 /// Lines of gprMax's own output that an error shows.
@@ -118,6 +118,9 @@ impl GprMax {
     /// # Errors
     /// See [`RunError`].
     pub fn run_model(&self, model: &Model, on_progress: OnProgress<'_>) -> Result<GprMaxRun, RunError> {
+        if model.order != Order::Second {
+            return Err(RunError::Order { order: model.order });
+        }
         let place = std::env::temp_dir();
         let folder = tempfile::Builder::new()
             .prefix("ballast-gpr-")
@@ -159,7 +162,7 @@ impl Forward for GprMax {
         match self.run_model(model, on_progress) {
             Ok(run) => Ok(run.traces),
             Err(RunError::Stopped) => Err(ForwardError::Stopped),
-            Err(error @ RunError::Write(_)) => Err(ForwardError::Model(Box::new(error))),
+            Err(error @ (RunError::Write(_) | RunError::Order { .. })) => Err(ForwardError::Model(Box::new(error))),
             Err(error) => Err(ForwardError::Solver(Box::new(error))),
         }
     }

@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use super::commands::CommandKind;
+use super::directives;
 use super::error::InFileError;
 use super::lines::split;
 use super::multiple::apply;
 use super::single::start;
 use crate::files::read_text;
-use crate::model::Model;
+use crate::model::{Model, Order};
 
 /// What an input file holds.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,7 +45,8 @@ pub fn read_input(path: &Path) -> Result<Input, InFileError> {
     let text = read_text(path)?;
     let at = |line: usize| move |problem| InFileError::Line { path: path.into(), line, problem: Box::new(problem) };
     let (commands, indented) = split(&text).map_err(|(line, problem)| at(line)(problem))?;
-    let mut model = start(path, &commands)?;
+    let order = directives::order(&text).map_err(|(line, problem)| at(line)(problem))?;
+    let mut model = start(path, &commands, order)?;
     let mut notes: Vec<Note> = indented
         .into_iter()
         .map(|line| Note { line, text: "ignored, as gprMax does: a command must start in the first column".into() })
@@ -84,4 +86,14 @@ pub fn read_input(path: &Path) -> Result<Input, InFileError> {
 /// As [`read_input`].
 pub fn read_model(path: &Path) -> Result<Model, InFileError> {
     read_input(path).map(|input| input.model)
+}
+
+/// The order of differences that an input file asks for (`## ballast-gpr: order 4`), whatever else stands in it.
+///
+/// # Errors
+/// When the file cannot be read, or asks for something unknown.
+pub fn read_order(path: &Path) -> Result<Order, InFileError> {
+    let text = read_text(path)?;
+    let at = |line: usize| move |problem| InFileError::Line { path: path.into(), line, problem: Box::new(problem) };
+    directives::order(&text).map_err(|(line, problem)| at(line)(problem))
 }

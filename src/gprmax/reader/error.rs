@@ -52,6 +52,14 @@ pub enum InFileError {
 /// What is wrong with a line.
 #[derive(Debug, thiserror::Error)]
 pub enum Problem {
+    /// A comment for the embedded solver that it does not know.
+    #[error(
+        "`{text}` is nothing that the embedded solver can be told\n\nhint: `## ballast-gpr: order 4`, or `order 2`"
+    )]
+    Directive {
+        /// What stands there.
+        text: String,
+    },
     /// No colon behind the name.
     #[error("a colon is missing behind the command in `{text}`\n\nhint: `#command: parameters`")]
     NoColon {

@@ -7,12 +7,15 @@
 
 mod build;
 mod commands;
+mod directives;
 mod error;
 mod lines;
 mod multiple;
 mod single;
 mod values;
 
-pub use build::{Input, Note, read_input, read_model};
+pub(super) use directives::DIRECTIVE;
+
+pub use build::{Input, Note, read_input, read_model, read_order};
 pub use commands::{COMMANDS, CommandKind};
 pub use error::{InFileError, Problem};

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::error::{InFileError, Problem};
 use super::lines::Command;
 use super::values::Parameters;
-use crate::model::{Axis, Grid, Model, TimeWindow, ceil_half_down};
+use crate::model::{Axis, Grid, Model, Order, TimeWindow, ceil_half_down};
 
 /// The most cells that a file may ask for: beyond it gprMax would need 300 GB (70 bytes a cell) and more.
 const MOST_CELLS: f64 = 4_294_967_296.0;
@@ -13,7 +13,7 @@ const MOST_CELLS: f64 = 4_294_967_296.0;
 const MOST_STEPS: f64 = 1e9;
 
 /// The model before anything is in it: grid, time window and the other single commands.
-pub(super) fn start(path: &Path, commands: &[Command<'_>]) -> Result<Model, InFileError> {
+pub(super) fn start(path: &Path, commands: &[Command<'_>], order: Order) -> Result<Model, InFileError> {
     let find = |name: &str| commands.iter().find(|command| command.name == name);
     let at = |command: &Command<'_>| {
         let line = command.line;
@@ -30,6 +30,7 @@ pub(super) fn start(path: &Path, commands: &[Command<'_>]) -> Result<Model, InFi
     let grid = grid(domain, sizes).map_err(at(domain))?;
     let title = find("title").map_or("", |command| command.parameters);
     let mut model = Model::new(title, grid, TimeWindow::Iterations(1));
+    model.order = order;
     if let Some(command) = find("time_step_stability_factor") {
         model.stability_factor = stability_factor(command).map_err(at(command))?;
     }

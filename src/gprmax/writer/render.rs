@@ -6,11 +6,12 @@ use minijinja::value::Serde;
 use minijinja::{AutoEscape, Environment, UndefinedBehavior};
 use serde::Serialize;
 
+use super::super::reader::DIRECTIVE;
 use super::error::WriteError;
 use super::number::{exponent, number};
 use super::voxel_files::VoxelFiles;
 use crate::files::write_bytes;
-use crate::model::{Material, MaterialId, Model, Object, Source, TimeWindow};
+use crate::model::{Material, MaterialId, Model, Object, Order, Source, TimeWindow};
 
 /// The template that is built in.
 pub const DEFAULT_TEMPLATE: &str = include_str!("../../../templates/model.in");
@@ -32,6 +33,8 @@ pub struct InputOptions {
 #[derive(Debug, Serialize)]
 struct Page {
     generator: &'static str,
+    /// What only the embedded solver reads; empty for gprMax's own scheme.
+    directive: String,
     title: String,
     domain: [String; 3],
     spacing: [String; 3],
@@ -146,6 +149,10 @@ fn page(model: &Model, voxels: &VoxelFiles<'_>) -> Result<Page, WriteError> {
     }
     Ok(Page {
         generator: concat!("written by ballast-gpr ", env!("CARGO_PKG_VERSION")),
+        directive: match model.order {
+            Order::Second => String::new(),
+            order => format!("{DIRECTIVE} order {order}"),
+        },
         title: model.title.split_whitespace().collect::<Vec<_>>().join(" "),
         domain: std::array::from_fn(|axis| number(grid.cells[axis] as f64 * grid.spacing[axis])),
         spacing: grid.spacing.map(number),
