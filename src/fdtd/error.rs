@@ -160,6 +160,35 @@ pub enum FdtdError {
         /// Its node.
         node: [usize; 3],
     },
+    /// A source along an axis along which a two-dimensional model holds no field.
+    #[error(
+        "source {number} drives a field along {}, which a two-dimensional model ({mode} across {}) does not hold",
+        axis.name(), invariant.name()
+    )]
+    Across {
+        /// Place in the list of sources, from 1.
+        number: usize,
+        /// Direction of the field.
+        axis: Axis,
+        /// The axis along which nothing changes.
+        invariant: Axis,
+        /// `TM` or `TE`.
+        mode: &'static str,
+    },
+    /// A source that does not lie on the one layer of nodes that holds the fields of a TE model.
+    #[error(
+        "source {number} lies at node {node} along {}, but the fields of a TE model are at node 1\n\n\
+         hint: move it one cell size up from 0 along {}",
+        axis.name(), axis.name()
+    )]
+    BetweenWalls {
+        /// Place in the list of sources, from 1.
+        number: usize,
+        /// The axis along which nothing changes.
+        axis: Axis,
+        /// Its node along this axis.
+        node: usize,
+    },
     /// Fields of a three-dimensional run that grew beyond reason.
     #[error(
         "E{} at step {step} is {value:e} V/m at node ({}, {}, {}), ({} m, {} m, {} m): the run diverged\n\n\

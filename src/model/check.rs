@@ -1,6 +1,6 @@
 //! Whether a model can be run well: resolution, time step, absorbing cells, memory.
 
-use super::{Grid, Model, Painted, Painted3};
+use super::{Axis, Grid, Model, Painted, Painted3};
 use crate::units::constants::C0;
 use crate::units::{Hertz, Metres};
 
@@ -43,6 +43,17 @@ pub enum CheckError {
         high: usize,
         /// Cells in all.
         cells: usize,
+    },
+    /// A TE model that is not two cells thick, or not two-dimensional.
+    #[error(
+        "a TE model across {} has two cells along that axis and more than one along the others, but this one has {} x {} x {}",
+        axis.name(), cells[0], cells[1], cells[2]
+    )]
+    TransverseElectric {
+        /// The axis that E lies across.
+        axis: Axis,
+        /// Cell counts.
+        cells: [usize; 3],
     },
     /// Too few cells in the shortest wavelength.
     #[error("{0}")]
@@ -108,7 +119,7 @@ impl Resolution {
         let of = |m: &super::Material| (m.id.clone(), m.eps_r_at(frequency) * m.mu_r);
         let (material, eps_r) = candidates.map(|(m, _)| of(m)).max_by(|a, b| a.1.total_cmp(&b.1))?;
         let wavelength = C0 / (frequency * eps_r.sqrt());
-        let cell = longest_side(&model.grid);
+        let cell = longest_side(model);
         Some(Self {
             material,
             eps_r,
@@ -168,9 +179,9 @@ fn short(value: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-fn longest_side(grid: &Grid) -> f64 {
-    let invariant = grid.invariant_axis();
-    (0..3).filter(|&axis| Some(axis) != invariant).map(|axis| grid.spacing[axis]).fold(0.0, f64::max)
+fn longest_side(model: &Model) -> f64 {
+    let invariant = model.invariant_axis();
+    (0..3).filter(|&axis| Some(axis) != invariant).map(|axis| model.grid.spacing[axis]).fold(0.0, f64::max)
 }
 
 /// Refuses a time step beyond the Courant limit, and a grid that cannot be.
@@ -184,6 +195,20 @@ pub fn check_stability_factor(model: &Model) -> Result<(), CheckError> {
     }
     let factor = model.stability_factor;
     if factor > 0.0 && factor <= 1.0 { Ok(()) } else { Err(CheckError::StabilityFactor { factor }) }
+}
+
+/// Refuses a TE model that is not two cells thick, or has an axis of a single cell.
+///
+/// # Errors
+/// With the axis and the cell counts.
+pub fn check_mode(model: &Model) -> Result<(), CheckError> {
+    let cells = model.grid.cells;
+    match model.transverse_electric {
+        Some(axis) if cells[axis.index()] != 2 || cells.contains(&1) => {
+            Err(CheckError::TransverseElectric { axis, cells })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Refuses absorbing cells that leave nothing between them.

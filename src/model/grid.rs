@@ -28,7 +28,11 @@ impl Grid {
 
     /// Largest stable time step, s: `1/(c sqrt(sum 1/d²))` over the axes along which the fields change.
     pub fn courant_step(&self) -> f64 {
-        let invariant = self.invariant_axis();
+        self.courant_step_without(self.invariant_axis())
+    }
+
+    /// As [`Grid::courant_step`], for fields that do not change along `invariant`.
+    pub fn courant_step_without(&self, invariant: Option<usize>) -> f64 {
         let sum: f64 =
             (0..3).filter(|&axis| Some(axis) != invariant).map(|axis| 1.0 / self.spacing[axis].powi(2)).sum();
         1.0 / (C0 * sum.sqrt())

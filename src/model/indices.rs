@@ -60,6 +60,18 @@ impl Indices {
         }
     }
 
+    /// The indices at these places, in their order.
+    pub fn picked(&self, places: &[usize]) -> Self {
+        if self.is_empty() {
+            return self.clone();
+        }
+        match self {
+            Self::U8(list) => Self::U8(places.iter().map(|&place| list[place]).collect()),
+            Self::U16(list) => Self::U16(places.iter().map(|&place| list[place]).collect()),
+            Self::U32(list) => Self::U32(places.iter().map(|&place| list[place]).collect()),
+        }
+    }
+
     /// How many there are.
     pub fn len(&self) -> usize {
         match self {

@@ -21,7 +21,7 @@ mod spec;
 
 pub use check::{
     CheckError, LEAST_CELLS_PER_WAVELENGTH, Resolution, WANTED_CELLS_PER_WAVELENGTH, available_memory,
-    check_absorbing_cells, check_memory, check_recording, check_stability_factor, mebibytes,
+    check_absorbing_cells, check_memory, check_mode, check_recording, check_stability_factor, mebibytes,
 };
 pub use effects::{Effect, Effects};
 pub use grid::{Grid, ceil_half_down};

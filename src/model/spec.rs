@@ -1,6 +1,6 @@
 //! The model itself.
 
-use super::{Grid, Material, MaterialId, Object, Order, Receiver, Source, Waveform};
+use super::{Axis, Grid, Material, MaterialId, Object, Order, Receiver, Source, Waveform};
 
 /// How long to simulate.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,6 +18,9 @@ pub struct Model {
     pub title: String,
     /// Cells and their sizes.
     pub grid: Grid,
+    /// The axis that the electric field lies across (`#domain_mode: TE`): two cells along it, of which only the node between
+    /// them holds fields. `None`: three-dimensional, or TM where the grid has one cell along an axis.
+    pub transverse_electric: Option<Axis>,
     /// Factor on the largest stable step, in (0, 1].
     pub stability_factor: f64,
     /// Order of the differences in space. It stands here because time step and number of steps follow from it.
@@ -50,6 +53,7 @@ impl Model {
         Self {
             title: title.into(),
             grid,
+            transverse_electric: None,
             stability_factor: 1.0,
             order: Order::Second,
             time_window,
@@ -101,9 +105,14 @@ impl Model {
         self.materials.iter().position(|material| material.id == id).map(|index| MaterialId(index as u16))
     }
 
+    /// The axis along which nothing changes, if the model is two-dimensional, TM or TE.
+    pub fn invariant_axis(&self) -> Option<usize> {
+        self.transverse_electric.map(Axis::index).or_else(|| self.grid.invariant_axis())
+    }
+
     /// Time step, s: the stability factor times the Courant step, 6/7 of it with differences of fourth order.
     pub fn time_step(&self) -> f64 {
-        self.grid.courant_step() * self.order.stable_share() * self.stability_factor
+        self.grid.courant_step_without(self.invariant_axis()) * self.order.stable_share() * self.stability_factor
     }
 
     /// Number of time steps, and so of samples: `ceil(window/dt) + 1` for a time, exactly `n` for a count.
@@ -116,7 +125,7 @@ impl Model {
 
     /// Absorbing cells at x0, y0, z0, xmax, ymax, zmax, defaults filled in.
     pub fn absorbing_cells(&self) -> [usize; 6] {
-        let invariant = self.grid.invariant_axis();
+        let invariant = self.invariant_axis();
         self.pml_cells.unwrap_or(std::array::from_fn(|side| if Some(side % 3) == invariant { 0 } else { 10 }))
     }
 }

@@ -76,7 +76,7 @@ pub fn antenna_alone(model: &Model) -> Model {
     alone.objects.clear();
     let sides = model.absorbing_cells();
     let most = sides.into_iter().max().unwrap_or(0);
-    let invariant = model.grid.invariant_axis();
+    let invariant = model.invariant_axis();
     alone.pml_cells = Some(std::array::from_fn(|side| if Some(side % 3) == invariant { 0 } else { most }));
     alone
 }

@@ -158,20 +158,21 @@ impl<T: Number> Grades<T> {
         (0..nx).map(|i| of_plane(i) + ny as u64).sum()
     }
 
-    /// The coefficients of row `j`.
+    /// The coefficients of row `j`, for the components that are active.
     #[inline(always)]
     pub fn row<'a>(
         &'a self,
         set: InstructionSet,
         table: Option<&Table<T>>,
         j: usize,
+        active: [bool; 3],
         lookup: &'a mut Lookup<T>,
     ) -> RowGrades<'a, T> {
         let width = lookup.cb[0].len();
         match (self, table) {
             (Self::Indexed { index, rows, lossy }, Some(table)) => {
                 let lossy = lossy[j];
-                for axis in 0..3 {
+                for axis in (0..3).filter(|&axis| active[axis]) {
                     let row = rows[axis][j];
                     let index =
                         if row.whole == MIXED { &index[axis][row.place as usize * width..][..width] } else { &[] };

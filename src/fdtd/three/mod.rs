@@ -4,8 +4,8 @@
 //! A model is painted, turned into coefficients (`setup`), cut into planes across x (`plane`, with `grades` for the
 //! coefficients of its edges, `absorbing` and `poles` for its memories) and stepped by passes that follow one another
 //! through the planes (`team`); the loops over a row are in `kernel`. An effect that a model does not call for has no
-//! array. Grids of one cell along an axis (TMx, TMy, and TMz beyond what the plane knows) run here
-//! too: the walls along that axis leave only its own fields.
+//! array. Two-dimensional models (TE, TM across x or y, and TMz beyond what the plane knows) run here too, turned so that y is
+//! the invariant axis (`turn`), with three components and one row in a plane.
 
 mod absorbing;
 mod grades;
@@ -17,5 +17,6 @@ mod run;
 mod setup;
 mod sheet;
 mod team;
+mod turn;
 
 pub use run::predict_three;

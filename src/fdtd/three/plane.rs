@@ -9,7 +9,7 @@ use super::kernel::{
     add_curl_lossy, add_h, add_h_magnetic,
 };
 use super::poles::{Dispersion, Poles, poles};
-use super::setup::Setup3;
+use super::setup::{Active, Setup3};
 use super::sheet::{Sheet, padded};
 
 /// A plane of the grid across x; see `sheet` for what lies where.
@@ -52,6 +52,7 @@ pub struct Shared<T> {
     set: InstructionSet,
     cells: [usize; 3],
     width: usize,
+    active: Active,
     ratio: [T; 3],
     table: Option<Table<T>>,
     /// Profiles of the rows within the slabs across y.
@@ -70,6 +71,7 @@ impl<T: Number> Shared<T> {
             set,
             cells,
             width: padded(cells[2]),
+            active: setup.active.clone(),
             ratio: std::array::from_fn(|axis| T::of(setup.ratio(axis))),
             table: Table::new(setup),
             y: (0..cells[1]).map(|j| Some((slot(j), profiles(setup, 1, j)?))).collect(),
@@ -213,7 +215,7 @@ impl<T: Number> Step<'_, T> {
     #[inline(always)]
     pub fn run(&self, plane: &mut Plane<T>, scratch: &mut Scratch<T>) {
         let (mut next_drive, mut next_run) = (0, 0);
-        for j in 0..self.shared.cells[1] {
+        for j in self.shared.active.rows.clone() {
             self.step_h(plane, j);
             self.step_e(plane, j, scratch, next_run);
             while let Some(drive) = plane.drives.get(next_drive).filter(|drive| drive.j == j) {
@@ -230,7 +232,7 @@ impl<T: Number> Step<'_, T> {
 
     #[inline(always)]
     fn step_h(&self, plane: &mut Plane<T>, j: usize) {
-        let n = self.shared.width;
+        let (n, active) = (self.shared.width, self.shared.active.h);
         let Plane { e: [ex, ey, ez], h, magnetic, absorbing, .. } = plane;
         let [_, ey_east, ez_east] = &self.east.e;
         // The differences of E that make the curl, along x, y, z of each component.
@@ -241,13 +243,17 @@ impl<T: Number> Step<'_, T> {
         let [hx, hy, hz] = rows_mut(h, j, n);
         match magnetic.as_deref() {
             None => {
-                add_h(hx, curls[0].0, curls[0].1);
-                add_h(hy, curls[1].0, curls[1].1);
-                add_h(hz, curls[2].0, curls[2].1);
+                for (axis, h) in [&mut *hx, &mut *hy, &mut *hz].into_iter().enumerate() {
+                    if active[axis] {
+                        add_h(h, curls[axis].0, curls[axis].1);
+                    }
+                }
             }
             Some([da, db]) => {
                 for (axis, h) in [&mut *hx, &mut *hy, &mut *hz].into_iter().enumerate() {
-                    add_h_magnetic(h, da[axis].at(j, 0, n), db[axis].at(j, 0, n), curls[axis].0, curls[axis].1);
+                    if active[axis] {
+                        add_h_magnetic(h, da[axis].at(j, 0, n), db[axis].at(j, 0, n), curls[axis].0, curls[axis].1);
+                    }
                 }
             }
         }
@@ -255,8 +261,12 @@ impl<T: Number> Step<'_, T> {
         let db = magnetic.as_deref().map(|[_, db]| db);
         if let Some((profiles, memory)) = &mut absorbing.x {
             let [first, second] = &mut memory.h;
-            absorb_h(hy, db.map(|db| db[1].at(j, 0, n)), dx_z, first.at_mut(j, 0, n), profiles[2]);
-            absorb_h(hz, db.map(|db| db[2].at(j, 0, n)), dx_y, second.at_mut(j, 0, n), profiles[3]);
+            if active[1] {
+                absorb_h(hy, db.map(|db| db[1].at(j, 0, n)), dx_z, first.at_mut(j, 0, n), profiles[2]);
+            }
+            if active[2] {
+                absorb_h(hz, db.map(|db| db[2].at(j, 0, n)), dx_y, second.at_mut(j, 0, n), profiles[3]);
+            }
         }
         if let (Some((slot, profiles)), Some(memory)) = (&self.shared.y[j], &mut absorbing.y) {
             let [first, second] = &mut memory.h;
@@ -268,14 +278,18 @@ impl<T: Number> Step<'_, T> {
             let [first, second] = &mut memory.h;
             let (x, y) = (db.map(|db| db[0].at(j, k, count)), db.map(|db| db[1].at(j, k, count)));
             let (first, second) = (first.at_mut(j, 0, count), second.at_mut(j, 0, count));
-            absorb_h_end(&mut hx[k..][..count], x, part(dz_y, k, count), first, columns.profile(2));
-            absorb_h_end(&mut hy[k..][..count], y, part(dz_x, k, count), second, columns.profile(3));
+            if active[0] {
+                absorb_h_end(&mut hx[k..][..count], x, part(dz_y, k, count), first, columns.profile(2));
+            }
+            if active[1] {
+                absorb_h_end(&mut hy[k..][..count], y, part(dz_x, k, count), second, columns.profile(3));
+            }
         }
     }
 
     #[inline(always)]
     fn step_e(&self, plane: &mut Plane<T>, j: usize, scratch: &mut Scratch<T>, next_run: usize) {
-        let (n, [_, _, nz]) = (self.shared.width, self.shared.cells);
+        let (n, [_, _, nz], active) = (self.shared.width, self.shared.cells, self.shared.active.e);
         let Plane { i, e, h: [hx, hy, hz], grades, absorbing, dispersion, .. } = plane;
         let Some(grades) = grades else { return };
         let Scratch { lookup, old } = scratch;
@@ -283,7 +297,7 @@ impl<T: Number> Step<'_, T> {
             let [ex, ey, ez] = &*e;
             dispersion.keep(j, [ex.at(j, 0, n), ey.at(j, 0, n), ez.at(j, 0, n)], old, next_run);
         }
-        let grades = grades.row(self.shared.set, self.shared.table.as_ref(), j, lookup);
+        let grades = grades.row(self.shared.set, self.shared.table.as_ref(), j, active, lookup);
         let [_, hy_west, hz_west] = &self.west.h;
         let (dx_z, dx_y) = ([hz_west.at(j, 0, n), hz.at(j, 0, n)], [hy_west.at(j, 0, n), hy.at(j, 0, n)]);
         let (dy_z, dy_x) = ([hz.south(j, 0, n), hz.at(j, 0, n)], [hx.south(j, 0, n), hx.at(j, 0, n)]);
@@ -294,24 +308,23 @@ impl<T: Number> Step<'_, T> {
             let (a, b) = curls[axis];
             EdgeRow { ca, cb: grades.cb[axis], ratio: self.shared.ratio[axis], a, b }
         };
-        match grades.ca {
-            None => {
-                add_curl(ex, of(0, &[]));
-                add_curl(ey, of(1, &[]));
-                add_curl(ez, of(2, &[]));
-            }
-            Some(ca) => {
-                add_curl_lossy(ex, of(0, ca[0]));
-                add_curl_lossy(ey, of(1, ca[1]));
-                add_curl_lossy(ez, of(2, ca[2]));
+        for (axis, e) in [&mut *ex, &mut *ey, &mut *ez].into_iter().enumerate() {
+            match grades.ca {
+                _ if !active[axis] => {}
+                None => add_curl(e, of(axis, &[])),
+                Some(ca) => add_curl_lossy(e, of(axis, ca[axis])),
             }
         }
         if let Some(absorbing) = absorbing {
             let cb = grades.cb;
             if let Some((profiles, memory)) = &mut absorbing.x {
                 let [first, second] = &mut memory.e;
-                absorb_row_scaled(ey, cb[1], dx_z, first.at_mut(j, 0, n), profiles[0]);
-                absorb_row_scaled(ez, cb[2], dx_y, second.at_mut(j, 0, n), profiles[1]);
+                if active[1] {
+                    absorb_row_scaled(ey, cb[1], dx_z, first.at_mut(j, 0, n), profiles[0]);
+                }
+                if active[2] {
+                    absorb_row_scaled(ez, cb[2], dx_y, second.at_mut(j, 0, n), profiles[1]);
+                }
             }
             if let (Some((slot, profiles)), Some(memory)) = (&self.shared.y[j], &mut absorbing.y) {
                 let [first, second] = &mut memory.e;
@@ -323,8 +336,12 @@ impl<T: Number> Step<'_, T> {
                 let [first, second] = &mut memory.e;
                 let (x, y) = (&cb[0][k..][..count], &cb[1][k..][..count]);
                 let (first, second) = (first.at_mut(j, 0, count), second.at_mut(j, 0, count));
-                absorb_columns_scaled(&mut ex[k..][..count], x, part(dz_y, k, count), first, columns.profile(0));
-                absorb_columns_scaled(&mut ey[k..][..count], y, part(dz_x, k, count), second, columns.profile(1));
+                if active[0] {
+                    absorb_columns_scaled(&mut ex[k..][..count], x, part(dz_y, k, count), first, columns.profile(0));
+                }
+                if active[1] {
+                    absorb_columns_scaled(&mut ey[k..][..count], y, part(dz_x, k, count), second, columns.profile(1));
+                }
             }
         }
         // The outer walls conduct perfectly, and nothing lies beyond them.

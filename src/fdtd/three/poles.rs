@@ -51,7 +51,7 @@ impl<T: Real> Dispersion<T> {
                         k += 1;
                     }
                     let poles = setup.edges[of].poles.len();
-                    if poles > 0 && !wall {
+                    if poles > 0 && !wall && setup.active.e[axis] {
                         runs.push(Run { j, axis, k: begin, count: k - begin, entry: of, place });
                         place += (k - begin) * poles;
                     }

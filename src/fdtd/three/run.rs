@@ -13,6 +13,7 @@ use super::plane::{Probe, Shared};
 use super::setup::{Setup3, check_model};
 use super::sheet::{Sheet, padded};
 use super::team;
+use super::turn::Turn;
 use crate::forward::OnProgress;
 use crate::model::{Grid, Model, Painted3, Resolution, TimeWindow, available_memory, check_memory, paint3};
 use crate::trace::{AScan, Component, ReceiverTraces, Traces};
@@ -34,7 +35,7 @@ impl Fdtd {
         if let Some(resolution) = Resolution::of_three(model, &painted) {
             resolution.check()?;
         }
-        self.solve_setup(model, Setup3::new(model, Cow::Owned(painted))?, on_progress)
+        self.solve_upright(model, Cow::Owned(painted), on_progress)
     }
 
     /// Runs a model that has been painted by [`paint3`] (and its resolution checked) already.
@@ -47,9 +48,27 @@ impl Fdtd {
         painted: &Painted3,
         on_progress: OnProgress<'_>,
     ) -> Result<(Traces, Stats), FdtdError> {
-        self.solve_setup(model, Setup3::new(model, Cow::Borrowed(painted))?, on_progress)
+        self.solve_upright(model, Cow::Borrowed(painted), on_progress)
     }
 
+    /// Turns a two-dimensional model so that y is its invariant axis, and runs it.
+    fn solve_upright(
+        &self,
+        model: &Model,
+        painted: Cow<'_, Painted3>,
+        on_progress: OnProgress<'_>,
+    ) -> Result<(Traces, Stats), FdtdError> {
+        let Some(turn) = Turn::of(model) else {
+            return self.solve_setup(model, Setup3::new(model, painted)?, on_progress);
+        };
+        let turned = turn.model(model);
+        let setup = Setup3::new(&turned, Cow::Owned(turn.painted(&painted)));
+        let run = setup.and_then(|setup| self.solve_setup(&turned, setup, on_progress));
+        let (traces, stats) = run.map_err(|error| turn.error_back(error))?;
+        Ok((turn.traces_back(model, traces), stats))
+    }
+
+    /// Runs a model whose invariant axis, if it has one, is y.
     fn solve_setup(
         &self,
         model: &Model,
@@ -165,6 +184,10 @@ pub fn predict_three(
     painted: &Painted3,
     threads: Option<NonZeroUsize>,
 ) -> Result<Prediction, FdtdError> {
+    if let Some(turn) = Turn::of(model) {
+        let predicted = predict_three(&turn.model(model), &turn.painted(painted), threads);
+        return predicted.map_err(|error| turn.error_back(error));
+    }
     let setup = Setup3::new(model, Cow::Borrowed(painted))?;
     let bytes = bytes_needed(&setup, Precision::Single);
     let [nx, ny, nz] = model.grid.cells;

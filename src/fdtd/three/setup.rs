@@ -7,7 +7,7 @@ use super::super::coefficients::{Edge, Slab, check_electric, edge_of};
 use super::super::setup::node_in_grid;
 use crate::model::{
     Axis, FaceMaterial, Indices, Model, Order, Painted3, Source, available_memory, check_absorbing_cells, check_grid,
-    check_recording, check_stability_factor,
+    check_mode, check_recording, check_stability_factor,
 };
 use crate::units::constants::{MU_0, Z0};
 
@@ -28,6 +28,33 @@ pub struct Setup3<'a> {
     pub iterations: usize,
     pub dt: f64,
     pub spacing: [f64; 3],
+    pub active: Active,
+}
+
+/// Which components a model has, and in which rows of a plane.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Active {
+    /// Ex, Ey, Ez.
+    pub e: [bool; 3],
+    /// Hx, Hy, Hz.
+    pub h: [bool; 3],
+    /// Rows of each plane.
+    pub rows: std::ops::Range<usize>,
+}
+
+impl Active {
+    /// All six, or the three of TM and TE; a plane of a two-dimensional model that is invariant along y has one row.
+    pub fn of(model: &Model) -> Self {
+        let rows = 0..model.grid.cells[1];
+        let Some(invariant) = model.invariant_axis() else { return Self { e: [true; 3], h: [true; 3], rows } };
+        let along = std::array::from_fn(|axis| axis == invariant);
+        let across = std::array::from_fn(|axis| axis != invariant);
+        match model.transverse_electric {
+            None => Self { e: along, h: across, rows },
+            Some(Axis::Y) => Self { e: across, h: along, rows: 1..2 },
+            Some(_) => Self { e: across, h: along, rows },
+        }
+    }
 }
 
 /// A source at a node.
@@ -73,6 +100,7 @@ impl<'a> Setup3<'a> {
             iterations: model.iterations(),
             dt,
             spacing: model.grid.spacing,
+            active: Active::of(model),
         })
     }
 
@@ -152,6 +180,7 @@ pub fn check_model(model: &Model) -> Result<(), FdtdError> {
     }
     check_grid(&model.grid)?;
     check_recording(model, available_memory())?;
+    check_mode(model)?;
     Ok(check_absorbing_cells(model)?)
 }
 
@@ -165,6 +194,16 @@ fn drive(
     let Source::HertzianDipole(dipole) = source;
     let node = node_in_grid(model, dipole.position, || format!("source {number}"))?;
     let axis = dipole.polarisation.index();
+    if let Some(invariant) = model.invariant_axis() {
+        let mode = if model.transverse_electric.is_some() { "TE" } else { "TM" };
+        if !Active::of(model).e[axis] {
+            let invariant = axis_of(invariant);
+            return Err(FdtdError::Across { number, axis: dipole.polarisation, invariant, mode });
+        }
+        if model.transverse_electric.is_some() && node[invariant] != 1 {
+            return Err(FdtdError::BetweenWalls { number, axis: axis_of(invariant), node: node[invariant] });
+        }
+    }
     if on_wall(painted.cells, axis, node) {
         return Err(FdtdError::OnWall { number, axis: dipole.polarisation, node });
     }

@@ -123,14 +123,16 @@ fn dataset(
     }))
 }
 
-/// Whether a component is zero everywhere in a two-dimensional model: with axis a invariant, E along the others and H along a.
+/// Whether a component is zero everywhere in a two-dimensional model: with axis a invariant, E along the others and H along a
+/// in TM, the other three in TE.
 fn vanishes(model: &Model, component: Component) -> bool {
     let along = match component {
         Component::Ex | Component::Hx => Axis::X,
         Component::Ey | Component::Hy => Axis::Y,
         _ => Axis::Z,
     };
-    model.grid.invariant_axis().is_some_and(|axis| (axis == along.index()) == component.is_magnetic())
+    let electric_across = model.transverse_electric.is_some();
+    model.invariant_axis().is_some_and(|axis| ((axis == along.index()) == component.is_magnetic()) != electric_across)
 }
 
 fn source(traces: &Traces, model: &Model, index: usize) -> Result<Group, OutputWriteError> {

@@ -20,6 +20,7 @@ use CommandKind::{GprMaxOnly, Multiple, Noted, Retired, Single};
 /// The commands of gprMax 4.0.1 without `#`, and those that older versions had.
 pub const COMMANDS: &[(&str, CommandKind)] = &[
     ("domain", Single),
+    ("domain_mode", Single),
     ("dx_dy_dz", Single),
     ("time_window", Single),
     ("title", Single),
@@ -44,7 +45,6 @@ pub const COMMANDS: &[(&str, CommandKind)] = &[
     ("geometry_view", Noted("no geometry file is written")),
     ("geometry_objects_write", Noted("no geometry file is written")),
     ("snapshot", Noted("no snapshot is written")),
-    ("domain_mode", GprMaxOnly),
     ("magnetic_averaging", GprMaxOnly),
     ("study", GprMaxOnly),
     ("array_codebook", GprMaxOnly),

@@ -240,6 +240,39 @@ pub enum Problem {
         /// Axis of the single cell.
         axis: &'static str,
     },
+    /// A two-dimensional mode without its infinite axis.
+    #[error(
+        "`#domain` has {found} infinite axes, but `#domain_mode: TM` and `TE` want one\n\n\
+         hint: write `inf` for the axis along which nothing changes, for example `#domain: 0.6 0.5 inf`"
+    )]
+    InfiniteAxes {
+        /// How many there are.
+        found: usize,
+    },
+    /// An infinite axis without a two-dimensional mode.
+    #[error("`inf` in `#domain` wants a two-dimensional mode\n\nhint: add `#domain_mode: TM` or `#domain_mode: TE`")]
+    InfiniteWithoutMode,
+    /// A source along the axis that a TE model's E lies across.
+    #[error(
+        "a source along {polarisation} in a TE model across {polarisation}: it must point along one of the other axes"
+    )]
+    AcrossTransverseElectric {
+        /// Direction of the source.
+        polarisation: &'static str,
+    },
+    /// A source off the one layer of nodes that holds the fields of a TE model.
+    #[error(
+        "a source at node {node} along {axis} of a TE model, whose fields are at node 1\n\n\
+         hint: give {spacing} for its {axis} coordinate"
+    )]
+    BetweenWalls {
+        /// The axis along which nothing changes.
+        axis: &'static str,
+        /// Node of the source.
+        node: i64,
+        /// Cell size along the axis, m.
+        spacing: f64,
+    },
     /// The file of a `#geometry_objects_read` is wrong.
     #[error(transparent)]
     Geometry(#[from] GeometryError),

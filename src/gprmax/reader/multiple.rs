@@ -121,6 +121,12 @@ fn hertzian_dipole(model: &mut Model, command: &Command<'_>) -> Result<(), Probl
     }
     let position = p.point(1)?;
     inside(model, "source", position)?;
+    if let Some(axis) = model.transverse_electric {
+        if axis == polarisation {
+            return Err(Problem::AcrossTransverseElectric { polarisation: polarisation.name() });
+        }
+        between_walls(model, axis, position)?;
+    }
     let id = p.word(4)?;
     let waveform = model.waveforms.iter().position(|known| known.id == id).ok_or_else(|| Problem::Undefined {
         what: "waveform",
@@ -269,6 +275,14 @@ fn material_id(model: &Model, p: &Parameters<'_>, id: &str) -> Result<MaterialId
         id: id.into(),
         nearest: nearest_name(id, model.materials.iter().map(|known| known.id.as_str())).map(Into::into),
     })
+}
+
+/// Sources of a TE model must lie on the layer of nodes that holds its fields.
+fn between_walls(model: &Model, axis: Axis, position: [f64; 3]) -> Result<(), Problem> {
+    match model.grid.node(axis.index(), position[axis.index()]) {
+        1 => Ok(()),
+        node => Err(Problem::BetweenWalls { axis: axis.name(), node, spacing: model.grid.spacing[axis.index()] }),
+    }
 }
 
 /// Sources, receivers and corners of boxes must lie on a node of the grid.

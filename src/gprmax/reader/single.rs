@@ -7,6 +7,13 @@ use super::lines::Command;
 use super::values::Parameters;
 use crate::model::{Axis, Grid, Model, Order, TimeWindow, ceil_half_down};
 
+/// `#domain_mode`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum DomainMode {
+    Transverse { electric: bool },
+    Three,
+}
+
 /// The most cells that a file may ask for: beyond it gprMax would need 300 GB (70 bytes a cell) and more.
 const MOST_CELLS: f64 = 4_294_967_296.0;
 /// The most time steps that a file may ask for.
@@ -27,10 +34,12 @@ pub(super) fn start(path: &Path, commands: &[Command<'_>], order: Order) -> Resu
     let window = essential("time_window", "#time_window: 8e-9")?;
 
     let sizes = cell_sizes(spacing).map_err(at(spacing))?;
-    let grid = grid(domain, sizes).map_err(at(domain))?;
+    let mode = find("domain_mode").map(|command| domain_mode(command).map_err(at(command))).transpose()?;
+    let (grid, infinite) = grid(domain, sizes, mode).map_err(at(domain))?;
     let title = find("title").map_or("", |command| command.parameters);
     let mut model = Model::new(title, grid, TimeWindow::Iterations(1));
     model.order = order;
+    model.transverse_electric = infinite.filter(|_| mode == Some(DomainMode::Transverse { electric: true }));
     if let Some(command) = find("time_step_stability_factor") {
         model.stability_factor = stability_factor(command).map_err(at(command))?;
     }
@@ -74,12 +83,37 @@ fn cell_sizes(command: &Command<'_>) -> Result<[f64; 3], Problem> {
     Ok(sizes)
 }
 
-fn grid(command: &Command<'_>, spacing: [f64; 3]) -> Result<Grid, Problem> {
-    let p = Parameters::of(command, "X Y Z", |n| n == 3)?;
-    if p.rest(0).contains(&"inf") {
-        return Err(p.unsupported("an infinite axis"));
+fn domain_mode(command: &Command<'_>) -> Result<DomainMode, Problem> {
+    let p = Parameters::of(command, "TM|TE|3D", |n| n == 1)?;
+    let word = p.word(0)?;
+    match word.to_uppercase().as_str() {
+        "TM" => Ok(DomainMode::Transverse { electric: false }),
+        "TE" => Ok(DomainMode::Transverse { electric: true }),
+        "3D" => Ok(DomainMode::Three),
+        _ => Err(p.not_one_of(word, "a mode", "TM, TE, 3D".into())),
     }
-    let extent = p.point(0)?;
+}
+
+/// The grid, and its infinite axis: one cell thick in TM, two in TE.
+fn grid(command: &Command<'_>, spacing: [f64; 3], mode: Option<DomainMode>) -> Result<(Grid, Option<Axis>), Problem> {
+    let p = Parameters::of(command, "X Y Z", |n| n == 3)?;
+    let axes = [Axis::X, Axis::Y, Axis::Z];
+    let infinite: Vec<Axis> = axes.into_iter().filter(|axis| p.rest(0)[axis.index()].to_lowercase() == "inf").collect();
+    let thickness = match mode {
+        Some(DomainMode::Transverse { .. }) if infinite.len() != 1 => {
+            return Err(Problem::InfiniteAxes { found: infinite.len() });
+        }
+        Some(DomainMode::Transverse { electric: true }) => 2.0,
+        Some(DomainMode::Transverse { electric: false }) => 1.0,
+        _ if !infinite.is_empty() => return Err(Problem::InfiniteWithoutMode),
+        _ => 0.0,
+    };
+    let mut extent = [0.0; 3];
+    for axis in 0..3 {
+        let is_infinite = infinite.iter().any(|of| of.index() == axis);
+        let what = "an extent in metres";
+        extent[axis] = if is_infinite { thickness * spacing[axis] } else { p.number(axis, what)? };
+    }
     let counts: [f64; 3] = std::array::from_fn(|axis| (extent[axis] / spacing[axis] - 0.5).ceil());
     let total = counts[0] * counts[1] * counts[2];
     for axis in 0..3 {
@@ -89,10 +123,11 @@ fn grid(command: &Command<'_>, spacing: [f64; 3]) -> Result<Grid, Problem> {
         return Err(Problem::TooManyCells { cells: counts, total, limit: MOST_CELLS });
     }
     let cells: [usize; 3] = std::array::from_fn(|axis| ceil_half_down(extent[axis] / spacing[axis]).max(0) as usize);
-    if cells.iter().filter(|&&count| count == 1).count() > 1 {
+    let single = cells.iter().filter(|&&count| count == 1).count();
+    if single > usize::from(thickness != 2.0) {
         return Err(p.unsupported("a domain with more than one axis of a single cell"));
     }
-    Ok(Grid { cells, spacing })
+    Ok((Grid { cells, spacing }, infinite.first().copied()))
 }
 
 fn stability_factor(command: &Command<'_>) -> Result<f64, Problem> {

@@ -18,7 +18,7 @@ pub const DEFAULT_TEMPLATE: &str = include_str!("../../../templates/model.in");
 
 /// How to write an input file.
 ///
-/// A template is one of minijinja (Jinja2). It sees texts `generator`, `title`, `time_window`, `time_step`,
+/// A template is one of minijinja (Jinja2). It sees texts `generator`, `title`, `domain_mode`, `time_window`, `time_step`,
 /// `stability_factor`, `threads`; lists `domain`, `spacing`, `cells`, `pml_cells`; the number `iterations`; `materials` (each
 /// `id`, `eps_r`, `sigma`, `mu_r`, `sigma_magnetic`, `poles` with `delta_eps`, `tau`), `waveforms` (`kind`, `amplitude`,
 /// `frequency`, `id`), `sources` (`polarisation`, `position`, `waveform`, `start`, `stop`), `receivers` (`position`, `name`),
@@ -37,6 +37,7 @@ struct Page {
     directive: String,
     title: String,
     domain: [String; 3],
+    domain_mode: &'static str,
     spacing: [String; 3],
     cells: [usize; 3],
     time_window: String,
@@ -154,7 +155,11 @@ fn page(model: &Model, voxels: &VoxelFiles<'_>) -> Result<Page, WriteError> {
             order => format!("{DIRECTIVE} order {order}"),
         },
         title: model.title.split_whitespace().collect::<Vec<_>>().join(" "),
-        domain: std::array::from_fn(|axis| number(grid.cells[axis] as f64 * grid.spacing[axis])),
+        domain: std::array::from_fn(|axis| match model.transverse_electric {
+            Some(across) if across.index() == axis => "inf".into(),
+            _ => number(grid.cells[axis] as f64 * grid.spacing[axis]),
+        }),
+        domain_mode: if model.transverse_electric.is_some() { "TE" } else { "" },
         spacing: grid.spacing.map(number),
         cells: grid.cells,
         time_window: match model.time_window {
