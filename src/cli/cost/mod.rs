@@ -1,7 +1,9 @@
 //! `cost`: what accuracy costs in time, measured on this machine.
 
 mod fdtd2d;
+mod growth;
 mod packing;
+mod roofline;
 
 use std::path::PathBuf;
 
@@ -15,7 +17,8 @@ use crate::units::Metres;
 #[derive(Debug, Clone, Args)]
 pub struct CostArgs {
     /// What to measure: `fdtd2d`, the built-in solver over cell size, smoothing and precision; `packing`, the random
-    /// sequential adsorption over the number of stones.
+    /// sequential adsorption over the number of stones; `growth`, the built-in solver's time over the number of cells in two
+    /// and three dimensions, beside what the machine's memory can give.
     #[arg(value_enum)]
     pub solver: CostName,
     /// fdtd2d: finest cell; the others are its doubles up to 8 mm. Half a millimetre takes minutes.
@@ -24,6 +27,9 @@ pub struct CostArgs {
     /// packing: most stones; the others are thirds of it down to a thousand.
     #[arg(long, value_name = "NUM", default_value_t = 100_000)]
     pub stones: usize,
+    /// growth: leave out grids of more cells [default: up to 27 million, which take 1 GB and minutes].
+    #[arg(long, value_name = "NUM")]
+    pub cells: Option<usize>,
     /// Folder for table (CSV, JSON) and figure [default: none are written].
     #[arg(long, value_name = "FOLDER")]
     pub out: Option<PathBuf>,
@@ -45,6 +51,8 @@ pub enum CostName {
     Fdtd2d,
     /// Random sequential adsorption and compaction.
     Packing,
+    /// Growth of the solver's time with the number of cells.
+    Growth,
 }
 
 /// Runs the subcommand.
@@ -58,5 +66,6 @@ pub fn run(args: &CostArgs) -> Result<(), CliError> {
     match args.solver {
         CostName::Fdtd2d => fdtd2d::run(args),
         CostName::Packing => packing::run(args),
+        CostName::Growth => growth::run(args),
     }
 }
