@@ -336,3 +336,28 @@ fn an_output_that_the_file_sends_elsewhere_is_found() {
     solver(interpreter, false).run_file(&paths[0], &output, &go_on).unwrap();
     assert!(output.is_file());
 }
+
+/// A file with a command that the embedded solver lacks: refused by name, and run by gprMax where the user says so.
+#[test]
+fn what_the_embedded_solver_lacks_gprmax_runs() {
+    let Some(interpreter) = gprmax() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let scene = "#domain: 0.06 0.06 0.06\n#dx_dy_dz: 0.002 0.002 0.002\n#time_window: 150\n#pml_cells: 5\n\
+        #waveform: ricker 1 2e9 w\n#transmission_line: z 0.03 0.03 0.03 50 w\n#rx: 0.04 0.03 0.03\n";
+    std::fs::write(folder.path().join("line.in"), scene).unwrap();
+    let run = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_ballast-gpr"));
+        command.args(["run", "line.in"]).args(arguments).current_dir(folder.path()).output().unwrap()
+    };
+    let refused = run(&[]);
+    assert_eq!(refused.status.code(), Some(2));
+    let message = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(message.contains("line 6: `#transmission_line` is not supported by the embedded solver"), "{message}");
+    assert!(message.contains("hint: `--solver gprmax`"), "{message}");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "a refused run leaves nothing");
+    let python = interpreter.python.to_str().unwrap();
+    let ran = run(&["--solver", "gprmax", "--gprmax-python", python, "--out", "line.h5"]);
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    let traces = read_traces(&folder.path().join("line.h5")).unwrap();
+    assert!(traces.receivers[0].component(Component::Ez).unwrap().peak() > 0.0);
+}
