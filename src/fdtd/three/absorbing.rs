@@ -102,11 +102,11 @@ impl<T: Real> Columns<T> {
         [true, false].into_iter().filter_map(one).collect()
     }
 
-    /// The profile of E of the first (0) or second (1) component, or of H (2, 3).
+    /// The profile of E of the first (0) or second (1) component, or of H (2, 3), from a node of the end on.
     #[inline(always)]
-    pub fn profile(&self, of: usize) -> ColumnProfile<'_, T> {
+    pub fn profile(&self, of: usize, from: usize) -> ColumnProfile<'_, T> {
         let [ra_less_one, rb, re, rf] = &self.profiles[of];
-        ColumnProfile { ra_less_one, rb, re, rf }
+        ColumnProfile { ra_less_one: &ra_less_one[from..], rb: &rb[from..], re: &re[from..], rf: &rf[from..] }
     }
 }
 

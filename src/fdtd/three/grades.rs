@@ -158,13 +158,14 @@ impl<T: Number> Grades<T> {
         (0..nx).map(|i| of_plane(i) + ny as u64).sum()
     }
 
-    /// The coefficients of row `j`, for the components that are active.
+    /// The coefficients of `n` nodes of row `j` from node `k` on, whole vectors, for the components that are active.
     #[inline(always)]
     pub fn row<'a>(
         &'a self,
         set: InstructionSet,
         table: Option<&Table<T>>,
         j: usize,
+        (k, n): (usize, usize),
         active: [bool; 3],
         lookup: &'a mut Lookup<T>,
     ) -> RowGrades<'a, T> {
@@ -174,24 +175,20 @@ impl<T: Number> Grades<T> {
                 let lossy = lossy[j];
                 for axis in (0..3).filter(|&axis| active[axis]) {
                     let row = rows[axis][j];
-                    let index =
-                        if row.whole == MIXED { &index[axis][row.place as usize * width..][..width] } else { &[] };
+                    let mixed = row.whole == MIXED;
+                    let index = if mixed { &index[axis][row.place as usize * width + k..][..n] } else { &[] };
                     let Lookup { ca, cb, holds } = &mut *lookup;
                     let [holds_ca, holds_cb] = &mut holds[axis];
-                    fill(set, &table.cb[axis], table.few, row.whole, index, &mut cb[axis], holds_cb);
+                    fill(set, &table.cb[axis], table.few, row.whole, index, k, &mut cb[axis], holds_cb);
                     if lossy {
-                        fill(set, &table.ca, table.few, row.whole, index, &mut ca[axis], holds_ca);
+                        fill(set, &table.ca, table.few, row.whole, index, k, &mut ca[axis], holds_ca);
                     }
                 }
-                let [ax, ay, az] = &lookup.ca;
-                let [bx, by, bz] = &lookup.cb;
-                RowGrades { ca: lossy.then_some([&ax[..], ay, az]), cb: [bx, by, bz] }
+                let part = |[x, y, z]: &'a [Vec<T>; 3]| [&x[k..][..n], &y[k..][..n], &z[k..][..n]];
+                RowGrades { ca: lossy.then_some(part(&lookup.ca)), cb: part(&lookup.cb) }
             }
             (Self::Stored { ca, cb, lossy }, _) => {
-                let row = |sheets: &'a [Sheet<T>; 3]| {
-                    let [x, y, z] = sheets;
-                    [x.at(j, 0, width), y.at(j, 0, width), z.at(j, 0, width)]
-                };
+                let row = |[x, y, z]: &'a [Sheet<T>; 3]| [x.at(j, k, n), y.at(j, k, n), z.at(j, k, n)];
                 RowGrades { ca: ca.as_deref().filter(|_| lossy[j]).map(row), cb: row(cb) }
             }
             (Self::Indexed { .. }, None) => {
@@ -202,20 +199,22 @@ impl<T: Number> Grades<T> {
     }
 }
 
-/// Fills a row unless it holds the wanted entry already.
+/// Fills a row unless it holds the wanted entry already, a mixed one as far as `index` goes from node `k` on.
 #[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "split off only so that both tables are filled alike")]
 fn fill<T: Number>(
     set: InstructionSet,
     table: &[T; TABLE],
     few: bool,
     entry: u8,
     index: &[u8],
+    k: usize,
     row: &mut [T],
     holds: &mut u8,
 ) {
     debug_assert_eq!(row.len() % LANES, 0);
     if entry == MIXED {
-        T::look_up(set, table, few, index, row);
+        T::look_up(set, table, few, index, &mut row[k..][..index.len()]);
     } else if *holds != entry {
         row.fill(table[usize::from(entry) % TABLE]);
     }

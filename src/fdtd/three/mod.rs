@@ -3,9 +3,10 @@
 //!
 //! A model is painted, turned into coefficients (`setup`), cut into planes across x (`plane`, with `grades` for the
 //! coefficients of its edges, `absorbing` and `poles` for its memories) and stepped by passes that follow one another
-//! through the planes (`team`); the loops over a row are in `kernel`. An effect that a model does not call for has no
-//! array. Two-dimensional models (TE, TM across x or y, and TMz beyond what the plane knows) run here too, turned so that y is
-//! the invariant axis (`turn`), with three components and one row in a plane.
+//! through the planes (`team`); the loops over a row are in `kernel`. Rows that no wave has reached, or that no receiver will
+//! hear of, are not stepped (`reach`). An effect that a model does not call for has no array. Two-dimensional models (TE, TM
+//! across x or y, and TMz beyond what the plane knows) run here too, turned so that y is the invariant axis (`turn`), with
+//! three components and one row in a plane.
 
 mod absorbing;
 mod grades;
@@ -13,6 +14,7 @@ mod instructions;
 mod kernel;
 mod plane;
 mod poles;
+mod reach;
 mod run;
 mod setup;
 mod sheet;

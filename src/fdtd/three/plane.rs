@@ -1,5 +1,6 @@
 //! A plane of the grid across x with everything that acts on it, and its step.
 
+use super::super::dispersion::overlap;
 use super::super::instructions::InstructionSet;
 use super::absorbing::{Absorbing, Columns, Profiles, profiles};
 use super::grades::{Grades, Lookup, Table};
@@ -9,6 +10,7 @@ use super::kernel::{
     add_curl_lossy, add_h, add_h_magnetic,
 };
 use super::poles::{Dispersion, Poles, poles};
+use super::reach::Cones;
 use super::setup::{Active, Setup3};
 use super::sheet::{Sheet, padded};
 
@@ -59,11 +61,13 @@ pub struct Shared<T> {
     y: Vec<Option<(usize, Profiles<T>)>>,
     z: Vec<Columns<T>>,
     poles: Poles<T>,
+    /// What need not be stepped.
+    pub cones: Cones,
 }
 
 impl<T: Number> Shared<T> {
-    /// Settles what all planes share.
-    pub fn new(setup: &Setup3<'_>, set: InstructionSet) -> Self {
+    /// Settles what all planes share; `skip`: leaves out what no wave has reached or no receiver will see.
+    pub fn new(setup: &Setup3<'_>, set: InstructionSet, skip: bool) -> Self {
         let cells = setup.painted.cells;
         let (low, high) = (setup.slabs[1].cells, setup.slabs[4].cells);
         let slot = |j: usize| if j < low { j } else { low + (j + high).saturating_sub(cells[1]) };
@@ -77,6 +81,7 @@ impl<T: Number> Shared<T> {
             y: (0..cells[1]).map(|j| Some((slot(j), profiles(setup, 1, j)?))).collect(),
             z: Columns::both(setup),
             poles: poles(setup),
+            cones: Cones::new(setup, skip),
         }
     }
 
@@ -214,33 +219,36 @@ impl<T: Number> Step<'_, T> {
     /// Runs the step.
     #[inline(always)]
     pub fn run(&self, plane: &mut Plane<T>, scratch: &mut Scratch<T>) {
-        let (mut next_drive, mut next_run) = (0, 0);
         for j in self.shared.active.rows.clone() {
-            self.step_h(plane, j);
-            self.step_e(plane, j, scratch, next_run);
-            while let Some(drive) = plane.drives.get(next_drive).filter(|drive| drive.j == j) {
-                let e = plane.e[drive.axis].at_mut(j, drive.k, 1);
-                e[0] = e[0] - drive.series[self.step];
-                next_drive += 1;
+            let Some(span) = self.shared.cones.span(plane.i, j, self.step) else { continue };
+            let (k, n) = span;
+            self.step_h(plane, j, span);
+            self.step_e(plane, j, span, scratch);
+            let first = plane.drives.partition_point(|drive| drive.j < j);
+            for drive in plane.drives[first..].iter().take_while(|drive| drive.j == j) {
+                if (k..k + n).contains(&drive.k) {
+                    let e = plane.e[drive.axis].at_mut(j, drive.k, 1);
+                    e[0] = e[0] - drive.series[self.step];
+                }
             }
             if let Some(dispersion) = &mut plane.dispersion {
-                let n = self.shared.width;
-                dispersion.relax_row(j, rows_mut(&mut plane.e, j, n), &scratch.old, &self.shared.poles, &mut next_run);
+                dispersion.relax_row(j, k, rows_mut(&mut plane.e, j, span), &scratch.old, &self.shared.poles);
             }
         }
     }
 
+    /// H of `n` nodes of row `j` from node `k` on.
     #[inline(always)]
-    fn step_h(&self, plane: &mut Plane<T>, j: usize) {
-        let (n, active) = (self.shared.width, self.shared.active.h);
+    fn step_h(&self, plane: &mut Plane<T>, j: usize, (k, n): (usize, usize)) {
+        let active = self.shared.active.h;
         let Plane { e: [ex, ey, ez], h, magnetic, absorbing, .. } = plane;
         let [_, ey_east, ez_east] = &self.east.e;
         // The differences of E that make the curl, along x, y, z of each component.
-        let (dx_z, dx_y) = ([ez.at(j, 0, n), ez_east.at(j, 0, n)], [ey.at(j, 0, n), ey_east.at(j, 0, n)]);
-        let (dy_x, dy_z) = ([ex.at(j, 0, n), ex.at(j + 1, 0, n)], [ez.at(j, 0, n), ez.at(j + 1, 0, n)]);
-        let (dz_y, dz_x) = ([ey.at(j, 0, n), ey.at(j, 1, n)], [ex.at(j, 0, n), ex.at(j, 1, n)]);
+        let (dx_z, dx_y) = ([ez.at(j, k, n), ez_east.at(j, k, n)], [ey.at(j, k, n), ey_east.at(j, k, n)]);
+        let (dy_x, dy_z) = ([ex.at(j, k, n), ex.at(j + 1, k, n)], [ez.at(j, k, n), ez.at(j + 1, k, n)]);
+        let (dz_y, dz_x) = ([ey.at(j, k, n), ey.at(j, k + 1, n)], [ex.at(j, k, n), ex.at(j, k + 1, n)]);
         let curls = [(dz_y, dy_z), (dx_z, dz_x), (dy_x, dx_y)];
-        let [hx, hy, hz] = rows_mut(h, j, n);
+        let [hx, hy, hz] = rows_mut(h, j, (k, n));
         match magnetic.as_deref() {
             None => {
                 for (axis, h) in [&mut *hx, &mut *hy, &mut *hz].into_iter().enumerate() {
@@ -252,7 +260,7 @@ impl<T: Number> Step<'_, T> {
             Some([da, db]) => {
                 for (axis, h) in [&mut *hx, &mut *hy, &mut *hz].into_iter().enumerate() {
                     if active[axis] {
-                        add_h_magnetic(h, da[axis].at(j, 0, n), db[axis].at(j, 0, n), curls[axis].0, curls[axis].1);
+                        add_h_magnetic(h, da[axis].at(j, k, n), db[axis].at(j, k, n), curls[axis].0, curls[axis].1);
                     }
                 }
             }
@@ -262,48 +270,51 @@ impl<T: Number> Step<'_, T> {
         if let Some((profiles, memory)) = &mut absorbing.x {
             let [first, second] = &mut memory.h;
             if active[1] {
-                absorb_h(hy, db.map(|db| db[1].at(j, 0, n)), dx_z, first.at_mut(j, 0, n), profiles[2]);
+                absorb_h(hy, db.map(|db| db[1].at(j, k, n)), dx_z, first.at_mut(j, k, n), profiles[2]);
             }
             if active[2] {
-                absorb_h(hz, db.map(|db| db[2].at(j, 0, n)), dx_y, second.at_mut(j, 0, n), profiles[3]);
+                absorb_h(hz, db.map(|db| db[2].at(j, k, n)), dx_y, second.at_mut(j, k, n), profiles[3]);
             }
         }
         if let (Some((slot, profiles)), Some(memory)) = (&self.shared.y[j], &mut absorbing.y) {
             let [first, second] = &mut memory.h;
-            absorb_h(hz, db.map(|db| db[2].at(j, 0, n)), dy_x, first.at_mut(*slot, 0, n), profiles[2]);
-            absorb_h(hx, db.map(|db| db[0].at(j, 0, n)), dy_z, second.at_mut(*slot, 0, n), profiles[3]);
+            absorb_h(hz, db.map(|db| db[2].at(j, k, n)), dy_x, first.at_mut(*slot, k, n), profiles[2]);
+            absorb_h(hx, db.map(|db| db[0].at(j, k, n)), dy_z, second.at_mut(*slot, k, n), profiles[3]);
         }
         for (columns, memory) in self.shared.z.iter().zip(&mut absorbing.z) {
-            let (k, count) = (columns.k, columns.count);
+            let Some((begin, count)) = overlap(columns.k, columns.count, k, n) else { continue };
+            let (from, within) = (begin - k, begin - columns.k);
             let [first, second] = &mut memory.h;
-            let (x, y) = (db.map(|db| db[0].at(j, k, count)), db.map(|db| db[1].at(j, k, count)));
-            let (first, second) = (first.at_mut(j, 0, count), second.at_mut(j, 0, count));
+            let (x, y) = (db.map(|db| db[0].at(j, begin, count)), db.map(|db| db[1].at(j, begin, count)));
+            let (first, second) = (first.at_mut(j, within, count), second.at_mut(j, within, count));
+            let (hx, hy) = (&mut hx[from..][..count], &mut hy[from..][..count]);
             if active[0] {
-                absorb_h_end(&mut hx[k..][..count], x, part(dz_y, k, count), first, columns.profile(2));
+                absorb_h_end(hx, x, part(dz_y, from, count), first, columns.profile(2, within));
             }
             if active[1] {
-                absorb_h_end(&mut hy[k..][..count], y, part(dz_x, k, count), second, columns.profile(3));
+                absorb_h_end(hy, y, part(dz_x, from, count), second, columns.profile(3, within));
             }
         }
     }
 
+    /// E of `n` nodes of row `j` from node `k` on.
     #[inline(always)]
-    fn step_e(&self, plane: &mut Plane<T>, j: usize, scratch: &mut Scratch<T>, next_run: usize) {
-        let (n, [_, _, nz], active) = (self.shared.width, self.shared.cells, self.shared.active.e);
+    fn step_e(&self, plane: &mut Plane<T>, j: usize, (k, n): (usize, usize), scratch: &mut Scratch<T>) {
+        let ([_, _, nz], active) = (self.shared.cells, self.shared.active.e);
         let Plane { i, e, h: [hx, hy, hz], grades, absorbing, dispersion, .. } = plane;
         let Some(grades) = grades else { return };
         let Scratch { lookup, old } = scratch;
         if let Some(dispersion) = dispersion {
             let [ex, ey, ez] = &*e;
-            dispersion.keep(j, [ex.at(j, 0, n), ey.at(j, 0, n), ez.at(j, 0, n)], old, next_run);
+            dispersion.keep(j, k, [ex.at(j, k, n), ey.at(j, k, n), ez.at(j, k, n)], old);
         }
-        let grades = grades.row(self.shared.set, self.shared.table.as_ref(), j, active, lookup);
+        let grades = grades.row(self.shared.set, self.shared.table.as_ref(), j, (k, n), active, lookup);
         let [_, hy_west, hz_west] = &self.west.h;
-        let (dx_z, dx_y) = ([hz_west.at(j, 0, n), hz.at(j, 0, n)], [hy_west.at(j, 0, n), hy.at(j, 0, n)]);
-        let (dy_z, dy_x) = ([hz.south(j, 0, n), hz.at(j, 0, n)], [hx.south(j, 0, n), hx.at(j, 0, n)]);
-        let (dz_y, dz_x) = ([hy.before(j, 0, n), hy.at(j, 0, n)], [hx.before(j, 0, n), hx.at(j, 0, n)]);
+        let (dx_z, dx_y) = ([hz_west.at(j, k, n), hz.at(j, k, n)], [hy_west.at(j, k, n), hy.at(j, k, n)]);
+        let (dy_z, dy_x) = ([hz.south(j, k, n), hz.at(j, k, n)], [hx.south(j, k, n), hx.at(j, k, n)]);
+        let (dz_y, dz_x) = ([hy.before(j, k, n), hy.at(j, k, n)], [hx.before(j, k, n), hx.at(j, k, n)]);
         let curls = [(dy_z, dz_y), (dz_x, dx_z), (dx_y, dy_x)];
-        let [ex, ey, ez] = rows_mut(e, j, n);
+        let [ex, ey, ez] = rows_mut(e, j, (k, n));
         let of = |axis: usize, ca| {
             let (a, b) = curls[axis];
             EdgeRow { ca, cb: grades.cb[axis], ratio: self.shared.ratio[axis], a, b }
@@ -320,36 +331,40 @@ impl<T: Number> Step<'_, T> {
             if let Some((profiles, memory)) = &mut absorbing.x {
                 let [first, second] = &mut memory.e;
                 if active[1] {
-                    absorb_row_scaled(ey, cb[1], dx_z, first.at_mut(j, 0, n), profiles[0]);
+                    absorb_row_scaled(ey, cb[1], dx_z, first.at_mut(j, k, n), profiles[0]);
                 }
                 if active[2] {
-                    absorb_row_scaled(ez, cb[2], dx_y, second.at_mut(j, 0, n), profiles[1]);
+                    absorb_row_scaled(ez, cb[2], dx_y, second.at_mut(j, k, n), profiles[1]);
                 }
             }
             if let (Some((slot, profiles)), Some(memory)) = (&self.shared.y[j], &mut absorbing.y) {
                 let [first, second] = &mut memory.e;
-                absorb_row_scaled(ez, cb[2], dy_x, first.at_mut(*slot, 0, n), profiles[0]);
-                absorb_row_scaled(ex, cb[0], dy_z, second.at_mut(*slot, 0, n), profiles[1]);
+                absorb_row_scaled(ez, cb[2], dy_x, first.at_mut(*slot, k, n), profiles[0]);
+                absorb_row_scaled(ex, cb[0], dy_z, second.at_mut(*slot, k, n), profiles[1]);
             }
             for (columns, memory) in self.shared.z.iter().zip(&mut absorbing.z) {
-                let (k, count) = (columns.k, columns.count);
+                let Some((begin, count)) = overlap(columns.k, columns.count, k, n) else { continue };
+                let (from, within) = (begin - k, begin - columns.k);
                 let [first, second] = &mut memory.e;
-                let (x, y) = (&cb[0][k..][..count], &cb[1][k..][..count]);
-                let (first, second) = (first.at_mut(j, 0, count), second.at_mut(j, 0, count));
+                let (x, y) = (&cb[0][from..][..count], &cb[1][from..][..count]);
+                let (first, second) = (first.at_mut(j, within, count), second.at_mut(j, within, count));
+                let (ex, ey) = (&mut ex[from..][..count], &mut ey[from..][..count]);
                 if active[0] {
-                    absorb_columns_scaled(&mut ex[k..][..count], x, part(dz_y, k, count), first, columns.profile(0));
+                    absorb_columns_scaled(ex, x, part(dz_y, from, count), first, columns.profile(0, within));
                 }
                 if active[1] {
-                    absorb_columns_scaled(&mut ey[k..][..count], y, part(dz_x, k, count), second, columns.profile(1));
+                    absorb_columns_scaled(ey, y, part(dz_x, from, count), second, columns.profile(1, within));
                 }
             }
         }
         // The outer walls conduct perfectly, and nothing lies beyond them.
-        (ex[0], ey[0]) = (T::default(), T::default());
-        if nz < n {
-            ex[nz..].fill(T::default());
-            ey[nz..].fill(T::default());
-            ez[nz..].fill(T::default());
+        if k == 0 {
+            (ex[0], ey[0]) = (T::default(), T::default());
+        }
+        if nz < k + n {
+            ex[nz - k..].fill(T::default());
+            ey[nz - k..].fill(T::default());
+            ez[nz - k..].fill(T::default());
         }
         if *i == 0 {
             ey.fill(T::default());
@@ -362,11 +377,12 @@ impl<T: Number> Step<'_, T> {
     }
 }
 
-/// Row `j` of three sheets. (A closure here would be compiled without the wide instructions of its caller.)
+/// `n` nodes from node `k` on of row `j` of three sheets. (A closure here would be compiled without the wide instructions
+/// of its caller.)
 #[inline(always)]
-fn rows_mut<T: Number>(sheets: &mut [Sheet<T>; 3], j: usize, n: usize) -> [&mut [T]; 3] {
+fn rows_mut<T: Number>(sheets: &mut [Sheet<T>; 3], j: usize, (k, n): (usize, usize)) -> [&mut [T]; 3] {
     let [x, y, z] = sheets;
-    [x.at_mut(j, 0, n), y.at_mut(j, 0, n), z.at_mut(j, 0, n)]
+    [x.at_mut(j, k, n), y.at_mut(j, k, n), z.at_mut(j, k, n)]
 }
 
 /// Corrects a row of H; `db` where anything is magnetic.

@@ -1,5 +1,6 @@
 //! Polarisation memory: for dispersive edges, and for no others.
 
+use super::super::dispersion::overlap;
 use super::super::real::Real;
 use super::kernel::{Pole, relax};
 use super::setup::Setup3;
@@ -8,12 +9,13 @@ use super::setup::Setup3;
 pub struct Dispersion<T> {
     /// Sorted by row, then axis, then node.
     runs: Vec<Run>,
+    /// First run of each row, and one entry more.
+    of_row: Vec<u32>,
     memory: Vec<T>,
 }
 
 /// A run of edges of one dispersive material along a row.
 struct Run {
-    j: usize,
     axis: usize,
     k: usize,
     count: usize,
@@ -38,7 +40,7 @@ impl<T: Real> Dispersion<T> {
         if setup.edges.iter().all(|edge| edge.poles.is_empty()) {
             return None;
         }
-        let (mut runs, mut place): (Vec<Run>, usize) = (vec![], 0);
+        let (mut runs, mut of_row, mut place): (Vec<Run>, Vec<u32>, usize) = (vec![], vec![0], 0);
         for j in 0..ny {
             let first = setup.painted.node([i, j, 0]);
             for axis in 0..3 {
@@ -52,33 +54,35 @@ impl<T: Real> Dispersion<T> {
                     }
                     let poles = setup.edges[of].poles.len();
                     if poles > 0 && !wall && setup.active.e[axis] {
-                        runs.push(Run { j, axis, k: begin, count: k - begin, entry: of, place });
+                        runs.push(Run { axis, k: begin, count: k - begin, entry: of, place });
                         place += (k - begin) * poles;
                     }
                 }
             }
+            of_row.push(runs.len() as u32);
         }
-        (!runs.is_empty()).then(|| Self { runs, memory: vec![T::default(); place] })
+        (!runs.is_empty()).then(|| Self { runs, of_row, memory: vec![T::default(); place] })
     }
 
-    /// Keeps E of a row's dispersive edges before its step; `next` is the first run not yet done.
+    /// Keeps E of a row's dispersive edges before its step; `e` begins at node `begin`.
     #[inline(always)]
-    pub fn keep(&self, j: usize, e: [&[T]; 3], old: &mut [Vec<T>; 3], next: usize) {
-        for run in self.runs[next..].iter().take_while(|run| run.j == j) {
-            let nodes = run.k..run.k + run.count;
-            old[run.axis][nodes.clone()].copy_from_slice(&e[run.axis][nodes]);
+    pub fn keep(&self, j: usize, begin: usize, e: [&[T]; 3], old: &mut [Vec<T>; 3]) {
+        for run in &self.runs[self.of_row[j] as usize..self.of_row[j + 1] as usize] {
+            if let Some((k, count)) = overlap(run.k, run.count, begin, e[run.axis].len()) {
+                old[run.axis][k..][..count].copy_from_slice(&e[run.axis][k - begin..][..count]);
+            }
         }
     }
 
-    /// Relaxes the dispersive edges of a row.
+    /// Relaxes the dispersive edges of a row; `e` begins at node `begin`.
     #[inline(always)]
-    pub fn relax_row(&mut self, j: usize, e: [&mut [T]; 3], old: &[Vec<T>; 3], poles: &Poles<T>, next: &mut usize) {
-        while let Some(run) = self.runs.get(*next).filter(|run| run.j == j) {
-            let nodes = run.k..run.k + run.count;
+    pub fn relax_row(&mut self, j: usize, begin: usize, e: [&mut [T]; 3], old: &[Vec<T>; 3], poles: &Poles<T>) {
+        for run in &self.runs[self.of_row[j] as usize..self.of_row[j + 1] as usize] {
+            let e = &mut *e[run.axis];
+            let Some((k, count)) = overlap(run.k, run.count, begin, e.len()) else { continue };
             let poles = &poles[run.entry];
             let memory = &mut self.memory[run.place..][..run.count * poles.len()];
-            relax(&mut e[run.axis][nodes.clone()], &old[run.axis][nodes], memory, poles);
-            *next += 1;
+            relax(&mut e[k - begin..][..count], &old[run.axis][k..][..count], memory, k - run.k, poles);
         }
     }
 }

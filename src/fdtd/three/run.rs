@@ -10,6 +10,7 @@ use super::absorbing::Absorbing;
 use super::grades::Grades;
 use super::instructions::Number;
 use super::plane::{Probe, Shared};
+use super::reach::Cones;
 use super::setup::{Setup3, check_model};
 use super::sheet::{Sheet, padded};
 use super::team;
@@ -35,7 +36,7 @@ impl Fdtd {
         if let Some(resolution) = Resolution::of_three(model, &painted) {
             resolution.check()?;
         }
-        self.solve_upright(model, Cow::Owned(painted), on_progress)
+        self.solve_upright(model, Cow::Owned(painted), true, on_progress)
     }
 
     /// Runs a model that has been painted by [`paint3`] (and its resolution checked) already.
@@ -48,7 +49,22 @@ impl Fdtd {
         painted: &Painted3,
         on_progress: OnProgress<'_>,
     ) -> Result<(Traces, Stats), FdtdError> {
-        self.solve_upright(model, Cow::Borrowed(painted), on_progress)
+        self.solve_upright(model, Cow::Borrowed(painted), true, on_progress)
+    }
+
+    /// Runs a painted model, all of its nodes in every step where `skip` is false, for measurements and tests; the traces
+    /// have the same bits either way.
+    ///
+    /// # Errors
+    /// See [`FdtdError`].
+    pub fn solve_stepping_three(
+        &self,
+        model: &Model,
+        painted: &Painted3,
+        skip: bool,
+        on_progress: OnProgress<'_>,
+    ) -> Result<(Traces, Stats), FdtdError> {
+        self.solve_upright(model, Cow::Borrowed(painted), skip, on_progress)
     }
 
     /// Turns a two-dimensional model so that y is its invariant axis, and runs it.
@@ -56,14 +72,15 @@ impl Fdtd {
         &self,
         model: &Model,
         painted: Cow<'_, Painted3>,
+        skip: bool,
         on_progress: OnProgress<'_>,
     ) -> Result<(Traces, Stats), FdtdError> {
         let Some(turn) = Turn::of(model) else {
-            return self.solve_setup(model, Setup3::new(model, painted)?, on_progress);
+            return self.solve_setup(model, Setup3::new(model, painted)?, skip, on_progress);
         };
         let turned = turn.model(model);
         let setup = Setup3::new(&turned, Cow::Owned(turn.painted(&painted)));
-        let run = setup.and_then(|setup| self.solve_setup(&turned, setup, on_progress));
+        let run = setup.and_then(|setup| self.solve_setup(&turned, setup, skip, on_progress));
         let (traces, stats) = run.map_err(|error| turn.error_back(error))?;
         Ok((turn.traces_back(model, traces), stats))
     }
@@ -73,13 +90,14 @@ impl Fdtd {
         &self,
         model: &Model,
         mut setup: Setup3<'_>,
+        skip: bool,
         on_progress: OnProgress<'_>,
     ) -> Result<(Traces, Stats), FdtdError> {
         let bytes = bytes_needed(&setup, self.precision);
         check_memory(bytes, available_memory())?;
         let (probes, mut stats) = match self.precision {
-            Precision::Single => self.run_three::<f32>(model, &mut setup, on_progress)?,
-            Precision::Double => self.run_three::<f64>(model, &mut setup, on_progress)?,
+            Precision::Single => self.run_three::<f32>(model, &mut setup, skip, on_progress)?,
+            Precision::Double => self.run_three::<f64>(model, &mut setup, skip, on_progress)?,
         };
         stats.bytes = bytes;
         Ok((traces(self.precision, model, &setup, probes), stats))
@@ -89,13 +107,14 @@ impl Fdtd {
         &self,
         model: &Model,
         setup: &mut Setup3<'_>,
+        skip: bool,
         on_progress: OnProgress<'_>,
     ) -> Result<(Vec<Probe>, Stats), FdtdError> {
         let instruction_set = self.instruction_set.resolve()?.set();
         let asked = self.threads.or_else(|| model.threads.and_then(NonZeroUsize::new));
         let wanted = asked.or_else(|| std::thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
         let threads = team::worthwhile_threads(model.grid.cell_count(), model.grid.cells[0], wanted);
-        let shared = Shared::<T>::new(setup, instruction_set);
+        let shared = Shared::<T>::new(setup, instruction_set, skip);
         let planes = team::planes(setup, &shared);
         let (probes, wall) = team::run(setup, &shared, planes, threads, on_progress)?;
         let cell_steps = model.grid.cell_count() as u64 * setup.iterations as u64;
@@ -168,6 +187,7 @@ fn bytes<T: Number>(setup: &Setup3<'_>) -> u64 {
         + magnetic
         + Grades::<T>::bytes(setup)
         + Absorbing::<T>::bytes(setup, width)
+        + Cones::bytes(setup.painted.cells)
         + (poles * size_of::<T>() + samples * setup.iterations) as u64
 }
 
@@ -209,7 +229,7 @@ pub fn predict_three(
     let mut fastest = |steps: usize| {
         cut.time_window = TimeWindow::Iterations(steps + 1);
         let run = |_| {
-            let run = fdtd.solve_painted_three(&cut, &piece, &|_| ControlFlow::Continue(()));
+            let run = fdtd.solve_stepping_three(&cut, &piece, false, &|_| ControlFlow::Continue(()));
             run.map(|(_, stats)| stats.wall.si())
         };
         (0..2).map(run).try_fold(f64::INFINITY, |fastest, seconds| Ok::<_, FdtdError>(seconds?.min(fastest)))
@@ -220,5 +240,7 @@ pub fn predict_three(
     let per_step = if marginal > 0.2 * whole { marginal } else { whole };
     let per_cell = per_step / (planes * ny * nz) as f64;
     let cell_steps = model.grid.cell_count() as u64 * setup.iterations as u64;
-    Ok(Prediction { bytes, seconds: per_cell * cell_steps as f64, cell_steps, share_saved: 0.0 })
+    let share_saved = Cones::new(&setup, true).reach().share_saved;
+    let seconds = per_cell * cell_steps as f64 * (1.0 - share_saved);
+    Ok(Prediction { bytes, seconds, cell_steps, share_saved })
 }

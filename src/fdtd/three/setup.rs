@@ -104,6 +104,17 @@ impl<'a> Setup3<'a> {
         })
     }
 
+    /// The nodes that sources act on, each with the first step at which it does.
+    pub fn begins(&self) -> impl Iterator<Item = ([usize; 3], usize)> {
+        let begin = |drive: &Drive| Some((drive.node, drive.series.iter().position(|&v| v != 0.0)?));
+        self.drives.iter().filter_map(begin)
+    }
+
+    /// By how many cells E moves in one step: see `reach`.
+    pub fn pace(&self) -> i32 {
+        1
+    }
+
     /// Frees the lists of cells, edges and faces where nobody else holds them: once the planes are built, nothing needs them.
     pub fn forget_painting(&mut self) {
         if let Cow::Owned(painted) = &mut self.painted {

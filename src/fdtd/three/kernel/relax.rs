@@ -19,17 +19,20 @@ pub struct Pole<T> {
 /// `E <- E - sum c0 T / EA`, `T <- c1 T + c2 (E_old - E)`. Departs from the paper: `T` is scaled by `dt`, and both halves
 /// of its update are done at once, so that in single precision the difference of E is formed before the product.
 ///
-/// Shape: `memory` holds the poles one after the other, each as long as `e` and `e_old`.
+/// Shape: `memory` holds the poles one after the other, equally long; `e` begins at place `from` of each.
 #[inline(always)]
-pub fn relax<T: Real>(e: &mut [T], e_old: &[T], memory: &mut [T], poles: &[Pole<T>]) {
+pub fn relax<T: Real>(e: &mut [T], e_old: &[T], memory: &mut [T], from: usize, poles: &[Pole<T>]) {
     let n = e.len();
     let e_old = &e_old[..n];
-    for (memory, pole) in memory.chunks_exact(n).zip(poles) {
+    let each = memory.len() / poles.len().max(1);
+    for (memory, pole) in memory.chunks_exact(each).zip(poles) {
+        let memory = &memory[from..][..n];
         for k in 0..n {
             e[k] = e[k] - pole.give * memory[k];
         }
     }
-    for (memory, pole) in memory.chunks_exact_mut(n).zip(poles) {
+    for (memory, pole) in memory.chunks_exact_mut(each).zip(poles) {
+        let memory = &mut memory[from..][..n];
         for k in 0..n {
             memory[k] = pole.keep * memory[k] + pole.take * (e_old[k] - e[k]);
         }
