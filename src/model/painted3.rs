@@ -1,6 +1,6 @@
 //! The cells, edges and faces of a three-dimensional model.
 
-use super::{EdgeMaterial, FaceMaterial, Indices, MaterialId, Painted};
+use super::{EdgeMaterial, FaceMaterial, Indices, MaterialId};
 
 /// The cells, edges and faces of a model on any grid.
 ///
@@ -74,14 +74,5 @@ impl Painted3 {
             faces: self.faces.each_ref().map(cut),
             averaged_edges: self.averaged_edges,
         }
-    }
-
-    /// The z edges of the lowest layer: all there is of a model that is invariant along z.
-    pub(super) fn into_plane(self) -> Painted {
-        let [nx, ny, nz] = self.cells;
-        let edge_z: Vec<u32> = (0..(nx + 1) * (ny + 1)).map(|node| self.edges[2].get(node * (nz + 1))).collect();
-        let averaged_edges = self.averaged_edges[2];
-        let solid = self.solid.iter().step_by(nz).copied().collect();
-        Painted { cells_xy: [nx, ny], solid, palette: self.palette, edge_z, averaged_edges }
     }
 }

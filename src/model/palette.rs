@@ -73,6 +73,11 @@ impl<'a> Palette<'a> {
         entry
     }
 
+    /// Takes over the entries of another palette; where each of them has gone.
+    pub(super) fn merge(&mut self, entries: &[EdgeMaterial]) -> Vec<u32> {
+        entries.iter().map(|&entry| self.enter(entry)).collect()
+    }
+
     /// The entries, in the order in which they were met.
     pub(super) fn into_entries(self) -> Vec<EdgeMaterial> {
         self.entries
