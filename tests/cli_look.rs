@@ -116,7 +116,7 @@ fn a_scene_is_explained_from_wherever_it_lies() {
     };
     assert!(on("Debye relaxation") && on("absorbing boundary") && !on("magnetic loss / permeability"));
     let table = place.ok(&["explain", "a"]);
-    for word in ["Bulk permittivity", "Arrivals", "Fouling", "Effects", "memory: ", "predicted time"] {
+    for word in ["Bulk permittivity", "Arrivals", "Fouling", "Effects", "light cones", "memory: ", "predicted time"] {
         assert!(table.contains(word), "{table}");
     }
     assert!(!place.ok(&["explain", "a/model.in"]).contains("Bulk permittivity"));

@@ -1,9 +1,13 @@
 //! The embedded solver in three dimensions as a machine: the same bits everywhere, errors that name things, its cost.
 
+use std::fs;
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Mutex;
+use std::time::Duration;
 
-use ballast_gpr::fdtd::{Fdtd, InstructionSet, Precision, predict_three};
+use ballast_gpr::fdtd::{CheckpointEvent, Checkpoints, Fdtd, FdtdError, InstructionSet, Precision, predict_three};
 use ballast_gpr::model::{
     Axis, DebyePole, Excitation, Grid, HertzianDipole, Material, MaterialId, Model, Object, Receiver, Source,
     TimeWindow, Waveform, WaveformKind, paint3,
@@ -151,4 +155,113 @@ fn the_cost_is_predicted() {
     assert_eq!((predicted.bytes, predicted.cell_steps), (stats.bytes, stats.cell_steps));
     let ratio = predicted.seconds / stats.wall.si();
     assert!((0.1..10.0).contains(&ratio), "predicted {} s, took {} s", predicted.seconds, stats.wall.si());
+}
+
+/// Runs a model with checkpoints at `path` after every few steps; `stop`: asks it to stop at once. What was told comes too.
+fn solve_kept(
+    model: &Model,
+    precision: Precision,
+    threads: usize,
+    path: &Path,
+    stop: bool,
+) -> (Result<Traces, FdtdError>, Vec<[usize; 2]>) {
+    let events = Mutex::new(vec![]);
+    let tell = |event: CheckpointEvent<'_>| {
+        events.lock().unwrap().push(match event {
+            CheckpointEvent::Resumed { step, .. } => [0, step],
+            CheckpointEvent::Written { step, iterations, bytes, .. } => {
+                assert!(iterations == 150 && bytes > 1_000_000);
+                [1, step]
+            }
+            CheckpointEvent::Failed { error } => panic!("{error}"),
+        });
+    };
+    let every = if stop { Duration::MAX } else { Duration::ZERO };
+    let every = every.min(Duration::from_secs(3600));
+    let (path, stop_after) = (path.to_path_buf(), Duration::ZERO);
+    let checkpoints = Checkpoints { path, every, stop_after, go_on: true, tell: &tell };
+    let fdtd = Fdtd { precision, threads: NonZeroUsize::new(threads), ..Fdtd::default() };
+    let flow = if stop { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+    let run = fdtd.solve_kept(model, &checkpoints, &|_| flow);
+    (run.map(|(traces, _)| traces), events.into_inner().unwrap())
+}
+
+/// Stopped every few steps and gone on with another number of threads each time, in either precision, every effect present:
+/// the same bits as in one go. A run that only writes checkpoints has the same bits, too.
+#[test]
+fn a_run_goes_on_from_its_checkpoint_to_the_same_bits() {
+    let model = everything(3);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.checkpoint");
+    for precision in [Precision::Single, Precision::Double] {
+        let plain = solve(&model, precision, 2, InstructionSet::Auto);
+        let (mut rounds, mut at) = (0, 0);
+        let traces = loop {
+            let threads = [1, 4, 2][rounds % 3];
+            let (run, events) = solve_kept(&model, precision, threads, &path, true);
+            if at > 0 {
+                assert_eq!(events[0], [0, at]);
+            }
+            match run {
+                Ok(traces) => break traces,
+                Err(FdtdError::Stopped) => {
+                    let [written, step] = *events.last().unwrap();
+                    assert!(written == 1 && step > at && step - at <= 32, "from {at} to {step}");
+                    (rounds, at) = (rounds + 1, step);
+                }
+                Err(error) => panic!("{error}"),
+            }
+        };
+        assert!(rounds >= 10 && traces == plain, "{rounds} rounds");
+        fs::remove_file(&path).unwrap();
+        let (traces, events) = solve_kept(&model, precision, 2, &path, false);
+        assert!(events.len() > 10 && traces.unwrap() == plain);
+        fs::remove_file(&path).unwrap();
+    }
+}
+
+/// A checkpoint of something else, or a damaged one, is refused by name; none is passed off.
+#[test]
+fn a_foreign_or_damaged_checkpoint_is_refused() {
+    let model = everything(3);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.checkpoint");
+    assert!(matches!(solve_kept(&model, Precision::Single, 1, &path, true).0, Err(FdtdError::Stopped)));
+    let whole = fs::read(&path).unwrap();
+    let refused = |model: &Model, precision| {
+        let message = solve_kept(model, precision, 1, &path, true).0.unwrap_err().to_string();
+        message.replace(&path.display().to_string(), "P")
+    };
+    let mut other = model.clone();
+    other.sources.pop();
+    let message = refused(&other, Precision::Single);
+    assert!(message.starts_with("the checkpoint `P` has another model: "), "{message}");
+    assert!(message.ends_with("\n\nhint: begin anew with `--fresh`"), "{message}");
+    let message = refused(&model, Precision::Double);
+    assert!(message.starts_with("the checkpoint `P` has another precision: single, wanted double"), "{message}");
+    let line = whole.iter().position(|&byte| byte == b'\n').unwrap();
+    let flipped = |at: usize| {
+        let mut bytes = whole.clone();
+        bytes[at] ^= 4;
+        bytes
+    };
+    for (bytes, begin) in [
+        (flipped(whole.len() / 2), "the checkpoint `P` is damaged: its checksum is wrong"),
+        (flipped(line + 1), "the checkpoint `P` is damaged: its checksum is wrong"),
+        (flipped(whole.len() - 1), "the checkpoint `P` is damaged: its checksum is wrong"),
+        (whole[..whole.len() - 1].to_vec(), "the checkpoint `P` is damaged: it is cut short"),
+        ([&whole[..], &[0]].concat(), "the checkpoint `P` is damaged: it is cut short or has something behind"),
+        (whole[..line - 3].to_vec(), "the checkpoint `P` is damaged: its first line"),
+        (flipped(2), "`P` is not a checkpoint"),
+        (b"\xff\xfe".to_vec(), "`P` is not a checkpoint"),
+        (vec![], "`P` is not a checkpoint"),
+    ] {
+        fs::write(&path, bytes).unwrap();
+        let message = refused(&model, Precision::Single);
+        assert!(message.starts_with(begin), "expected `{begin}…`, found `{message}`");
+    }
+    // The number of threads is no part of the model.
+    fs::write(&path, whole).unwrap();
+    other = Model { threads: Some(2), ..model };
+    assert!(matches!(solve_kept(&other, Precision::Single, 1, &path, true).0, Err(FdtdError::Stopped)));
 }

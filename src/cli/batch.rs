@@ -73,6 +73,7 @@ pub fn run_many(args: &RunArgs) -> Result<(), CliError> {
                     if args.force {
                         command.arg("--force");
                     }
+                    args.keep.pass_on(&mut command);
                     if let Some(python) = &args.gprmax_python {
                         command.arg("--gprmax-python").arg(python);
                     }

@@ -4,12 +4,13 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use crate::cli::checkpoint;
 use crate::cli::error::CliError;
 use crate::cli::folder::RunRecord;
 use crate::cli::progress::Bar;
 use crate::cli::run::{Outcome, RunArgs, SolverName, built_in_solver, fingerprint, kept_or_refused, paths, record};
 use crate::cli::table::Report;
-use crate::fdtd::{Fdtd, Stats};
+use crate::fdtd::{Checkpoints, Fdtd, FdtdError, Stats};
 use crate::forward::Progress;
 use crate::gprmax;
 use crate::model::{self, Model, Painted, Painted3, Resolution};
@@ -42,10 +43,11 @@ impl Geometry {
         &self,
         solver: &Fdtd,
         model: &Model,
+        checkpoints: Option<&Checkpoints<'_>>,
         bar: &Bar,
         done: usize,
         total: usize,
-    ) -> Result<(Traces, Stats), CliError> {
+    ) -> Result<(Traces, Stats), FdtdError> {
         // A thousand parts for each trace, so that the bar moves within one, too.
         let on_progress = |progress: Progress| {
             let within = 1000 * progress.done / progress.total.max(1);
@@ -53,7 +55,10 @@ impl Geometry {
         };
         Ok(match self {
             Self::Two(painted) => solver.solve_painted(model, painted, &on_progress)?,
-            Self::Three(painted) => solver.solve_painted_three(model, painted, &on_progress)?,
+            Self::Three(painted) => match checkpoints {
+                Some(checkpoints) => solver.solve_painted_three_kept(model, painted, checkpoints, &on_progress)?,
+                None => solver.solve_painted_three(model, painted, &on_progress)?,
+            },
         })
     }
 }
@@ -92,8 +97,11 @@ pub fn run(args: &RunArgs, count: NonZeroUsize) -> Result<(), CliError> {
         }
         let started = Instant::now();
         let moved = model.at_trace(trace);
-        let (traces, stats) = geometry.solve(&solver, &moved, &bar, trace, count.get())?;
+        let ((traces, stats), used) = checkpoint::with_checkpoint(&args.keep, &result, |checkpoints| {
+            geometry.solve(&solver, &moved, checkpoints, &bar, trace, count.get())
+        })?;
         gprmax::write_traces(&result, &traces, &moved)?;
+        used.remove();
         let record: RunRecord = record(args, &fingerprint, started, Some(stats.wall.si()));
         record.write_beside(&result)?;
         outcomes.push(Outcome { target: target.clone(), result, kept: false, record });

@@ -6,6 +6,7 @@ use std::time::Instant;
 use clap::Args;
 
 use crate::cli::build::build_folder;
+use crate::cli::checkpoint::CheckpointArgs;
 use crate::cli::comparison_figure;
 use crate::cli::error::CliError;
 use crate::cli::folder;
@@ -144,6 +145,7 @@ pub fn run(args: &DemoArgs) -> Result<(), CliError> {
 
 fn run_args(target: &Path, solver: SolverName, force: bool) -> RunArgs {
     RunArgs {
+        keep: CheckpointArgs::default(),
         targets: vec![target.into()],
         solver,
         threads: None,

@@ -84,20 +84,28 @@ pub fn run(args: &ExplainArgs) -> Result<(), CliError> {
         print_scene(scene);
     }
     print_model(&model);
-    let mut table = Report::new("Effects", ["effect", "", "why", "memory"]);
+    let mut table = Report::new("Effects", ["effect", "", "why", "share of the grid", "memory"]);
     for (name, on, why) in scene.iter().flat_map(scene_effects) {
-        table.row([name.into(), if on { "on" } else { "off" }.into(), why, "–".into()]);
+        table.row([name.into(), if on { "on" } else { "off" }.into(), why, "–".into(), "–".into()]);
     }
     for effect in &effects.list {
+        let share = if effect.share > 0.0 { percent(effect.share) } else { "–".into() };
         let memory = if effect.bytes > 0 { human_bytes(effect.bytes) } else { "–".into() };
         table.row([
             effect.name.to_string(),
             if effect.on { "on" } else { "off" }.into(),
             effect.reason.clone(),
+            share,
             memory,
         ]);
     }
+    let left_out = if prediction.share_saved > 0.0 { "on" } else { "off" };
+    let why = format!("{} of the cell-steps are left out", percent(prediction.share_saved));
+    table.row(["light cones".into(), left_out.into(), why, "–".into(), "–".into()]);
     table.print();
+    println!(
+        "share of the grid: of its edges (of its cells for the boundary), and so of the cell-steps before light cones"
+    );
     if let Some(resolution) = &resolution {
         println!(
             "resolution: {:.1} cells per shortest wavelength ({:.1} mm in `{}` at {:.2} GHz)",
@@ -243,6 +251,12 @@ fn print_model(model: &Model) {
         1e12 * model.time_step(),
         model.order
     );
+}
+
+/// A share as people read it.
+fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    if percent > 0.0 && percent < 0.1 { "under 0.1 %".into() } else { format!("{percent:.1} %") }
 }
 
 /// Bytes as people read them.

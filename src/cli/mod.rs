@@ -3,6 +3,7 @@
 mod batch;
 mod bscan;
 mod build;
+mod checkpoint;
 mod child;
 mod compare;
 mod comparison_figure;

@@ -8,6 +8,7 @@ use clap::{Args, ValueEnum};
 
 use crate::cli::batch;
 use crate::cli::bscan;
+use crate::cli::checkpoint::{self, CheckpointArgs};
 use crate::cli::error::CliError;
 use crate::cli::folder::{self, RunRecord};
 use crate::cli::progress::Bar;
@@ -50,6 +51,8 @@ pub struct RunArgs {
     /// built once; the results are FILE1.h5, FILE2.h5 and so on, as gprMax numbers them.
     #[arg(short = 'n', long, value_name = "NUM")]
     pub traces: Option<NonZeroUsize>,
+    #[command(flatten)]
+    pub keep: CheckpointArgs,
     /// Print the outcome as JSON.
     #[arg(long)]
     pub json: bool,
@@ -270,9 +273,14 @@ fn run_fdtd(args: &RunArgs, input: &Path, result: &Path) -> Result<Option<f64>, 
     let bar = Bar::new("simulating");
     let mut model = read.model;
     model.order = args.order.unwrap_or(model.order);
-    let (traces, stats) = built_in_solver(args).solve_stats(&model, &|progress| bar.update(progress))?;
+    let solver = built_in_solver(args);
+    let ((traces, stats), used) = checkpoint::with_checkpoint(&args.keep, result, |checkpoints| match checkpoints {
+        Some(checkpoints) => solver.solve_kept(&model, checkpoints, &|progress| bar.update(progress)),
+        None => solver.solve_stats(&model, &|progress| bar.update(progress)),
+    })?;
     drop(bar);
     gprmax::write_traces(result, &traces, &model)?;
+    used.remove();
     Ok(Some(stats.wall.si()))
 }
 

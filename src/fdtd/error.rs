@@ -1,5 +1,6 @@
 //! Why the embedded solver gave no traces.
 
+use super::checkpoint::CheckpointError;
 use super::instructions::InstructionSet;
 use crate::forward::ForwardError;
 use crate::model::{Axis, CheckError, Order, PaintError};
@@ -207,6 +208,9 @@ pub enum FdtdError {
         /// E there, V/m.
         value: f64,
     },
+    /// A checkpoint that the run cannot go on from.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
     /// The caller asked to stop.
     #[error("stopped on request")]
     Stopped,

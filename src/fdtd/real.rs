@@ -2,6 +2,8 @@
 
 use std::ops::{Add, Mul, Sub};
 
+use super::state::Numbers;
+
 /// A number that a field may hold: `f32` or `f64`.
 pub trait Real:
     Copy + PartialOrd + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Default + Send + Sync + 'static
@@ -12,10 +14,12 @@ pub trait Real:
     fn double(self) -> f64;
     /// Whether its magnitude is larger than a limit, or it is not a number.
     fn is_beyond(self, limit: Self) -> bool;
+    /// Some of them, as a part of a state.
+    fn numbers(some: &mut [Self]) -> Numbers<'_>;
 }
 
 macro_rules! real {
-    ($($precision:ty),+) => {$(
+    ($($precision:ty: $numbers:ident),+) => {$(
         impl Real for $precision {
             #[inline(always)]
             fn of(value: f64) -> Self {
@@ -29,8 +33,11 @@ macro_rules! real {
             fn is_beyond(self, limit: Self) -> bool {
                 self.abs() > limit || self.is_nan()
             }
+            fn numbers(some: &mut [Self]) -> Numbers<'_> {
+                Numbers::$numbers(some)
+            }
         }
     )+};
 }
 
-real!(f32, f64);
+real!(f32: Single, f64: Double);

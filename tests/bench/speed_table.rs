@@ -38,7 +38,7 @@ fn our_loop(model: &Model, threads: usize) -> Outcome<(f64, f64)> {
     let (_, stats) = if model.is_plane() {
         fdtd.solve_stepping(model, &paint(model)?, every, go_on)?
     } else {
-        fdtd.solve_painted_three(model, &paint3(model)?, go_on)?
+        fdtd.solve_stepping_three(model, &paint3(model)?, false, go_on)?
     };
     Ok((stats.cell_steps_per_second() / 1e6, stats.bytes as f64 / model.grid.cell_count() as f64))
 }

@@ -59,7 +59,7 @@ fn solve(fdtd: &Fdtd, model: &Model) -> Result<Stats, CliError> {
     Ok(if model.is_plane() {
         fdtd.solve_stepping(model, &model::paint(model)?, every, &|_| interrupt::flow())?.1
     } else {
-        fdtd.solve_painted_three(model, &model::paint3(model)?, &|_| interrupt::flow())?.1
+        fdtd.solve_stepping_three(model, &model::paint3(model)?, false, &|_| interrupt::flow())?.1
     })
 }
 

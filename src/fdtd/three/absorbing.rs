@@ -2,6 +2,7 @@
 
 use super::super::coefficients::Slab;
 use super::super::real::Real;
+use super::super::state::{Numbers, State};
 use super::kernel::{ColumnProfile, RowProfile};
 use super::setup::Setup3;
 use super::sheet::{LANES, Sheet};
@@ -110,6 +111,14 @@ impl<T: Real> Columns<T> {
     }
 }
 
+impl<T: Real> State for Memory<T> {
+    fn visit(&mut self, visitor: &mut dyn FnMut(Numbers<'_>)) {
+        let Self { e, h } = self;
+        e.visit(visitor);
+        h.visit(visitor);
+    }
+}
+
 /// The absorbing memory of one plane.
 #[derive(Debug)]
 pub struct Absorbing<T> {
@@ -119,6 +128,17 @@ pub struct Absorbing<T> {
     pub y: Option<Memory<T>>,
     /// At each end of z.
     pub z: Vec<Memory<T>>,
+}
+
+impl<T: Real> State for Absorbing<T> {
+    fn visit(&mut self, visitor: &mut dyn FnMut(Numbers<'_>)) {
+        let Self { x, y, z } = self;
+        if let Some((_, memory)) = x {
+            memory.visit(visitor);
+        }
+        y.visit(visitor);
+        z.visit(visitor);
+    }
 }
 
 impl<T: Real> Absorbing<T> {

@@ -2,6 +2,7 @@
 
 use super::super::dispersion::overlap;
 use super::super::instructions::InstructionSet;
+use super::super::state::{Numbers, State};
 use super::absorbing::{Absorbing, Columns, Profiles, profiles};
 use super::grades::{Grades, Lookup, Table};
 use super::instructions::Number;
@@ -63,6 +64,24 @@ pub struct Shared<T> {
     poles: Poles<T>,
     /// What need not be stepped.
     pub cones: Cones,
+}
+
+impl<T: Number> State for Plane<T> {
+    fn visit(&mut self, visitor: &mut dyn FnMut(Numbers<'_>)) {
+        let Self { i: _, e, h, grades: _, magnetic: _, absorbing, drives: _, dispersion, probes } = self;
+        e.visit(visitor);
+        h.visit(visitor);
+        absorbing.visit(visitor);
+        dispersion.visit(visitor);
+        probes.visit(visitor);
+    }
+}
+
+impl State for Probe {
+    fn visit(&mut self, visitor: &mut dyn FnMut(Numbers<'_>)) {
+        let Self { receiver: _, j: _, k: _, samples } = self;
+        samples.iter_mut().for_each(|samples| visitor(Numbers::Double(samples)));
+    }
 }
 
 impl<T: Number> Shared<T> {
@@ -141,7 +160,7 @@ impl<T: Number> Plane<T> {
             receiver,
             j: node[1],
             k: node[2],
-            samples: std::array::from_fn(|_| Vec::with_capacity(setup.iterations)),
+            samples: std::array::from_fn(|_| vec![0.0; setup.iterations]),
         };
         let faces = |of: usize| -> [Sheet<T>; 3] {
             std::array::from_fn(|axis| {
@@ -175,14 +194,14 @@ impl<T: Number> Plane<T> {
         Self { e, h, absorbing, ..self }
     }
 
-    /// Takes the receivers' samples before a step; the first that is beyond `limit`, as axis and `(j, k)`.
-    pub fn record(&mut self, limit: T) -> Option<(usize, [usize; 2])> {
+    /// Takes the receivers' samples before step `number`; the first that is beyond `limit`, as axis and `(j, k)`.
+    pub fn record(&mut self, number: usize, limit: T) -> Option<(usize, [usize; 2])> {
         let mut found = None;
         for probe in &mut self.probes {
             for (field, samples) in probe.samples.iter_mut().enumerate() {
                 let sheet = if field < 3 { &self.e[field] } else { &self.h[field - 3] };
                 let value = sheet.at(probe.j, probe.k, 1)[0];
-                samples.push(value.double());
+                samples[number] = value.double();
                 if field < 3 && value.is_beyond(limit) {
                     found = Some((field, [probe.j, probe.k]));
                 }

@@ -2,6 +2,7 @@
 
 use super::super::dispersion::overlap;
 use super::super::real::Real;
+use super::super::state::{Numbers, State};
 use super::kernel::{Pole, relax};
 use super::setup::Setup3;
 
@@ -31,6 +32,13 @@ pub type Poles<T> = Vec<Vec<Pole<T>>>;
 pub fn poles<T: Real>(setup: &Setup3<'_>) -> Poles<T> {
     let pole = |&[give, keep, take]: &[f64; 3]| Pole { give: T::of(give), keep: T::of(keep), take: T::of(take) };
     setup.edges.iter().map(|edge| edge.poles.iter().map(pole).collect()).collect()
+}
+
+impl<T: Real> State for Dispersion<T> {
+    fn visit(&mut self, visitor: &mut dyn FnMut(Numbers<'_>)) {
+        let Self { runs: _, of_row: _, memory } = self;
+        visitor(T::numbers(memory));
+    }
 }
 
 impl<T: Real> Dispersion<T> {

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 
+use super::super::checkpoint::{Checkpoints, Keeper};
 use super::super::predict::Prediction;
 use super::super::{Fdtd, FdtdError, Precision, Stats};
 use super::absorbing::Absorbing;
@@ -20,6 +21,14 @@ use crate::model::{Grid, Model, Painted3, Resolution, TimeWindow, available_memo
 use crate::trace::{AScan, Component, ReceiverTraces, Traces};
 use crate::units::{Metres, Seconds};
 
+/// How a run goes.
+#[derive(Clone, Copy)]
+struct Manner<'a> {
+    /// Leaves out what no wave has reached or no receiver will see.
+    skip: bool,
+    checkpoints: Option<&'a Checkpoints<'a>>,
+}
+
 impl Fdtd {
     /// Paints a model of [`Route::Space`](crate::model::Route::Space) and runs it.
     ///
@@ -28,6 +37,7 @@ impl Fdtd {
     pub(in super::super) fn solve_three(
         &self,
         model: &Model,
+        checkpoints: Option<&Checkpoints<'_>>,
         on_progress: OnProgress<'_>,
     ) -> Result<(Traces, Stats), FdtdError> {
         check_model(model)?;
@@ -36,7 +46,7 @@ impl Fdtd {
         if let Some(resolution) = Resolution::of_three(model, &painted) {
             resolution.check()?;
         }
-        self.solve_upright(model, Cow::Owned(painted), true, on_progress)
+        self.solve_upright(model, Cow::Owned(painted), Manner { skip: true, checkpoints }, on_progress)
     }
 
     /// Runs a model that has been painted by [`paint3`] (and its resolution checked) already.
@@ -49,7 +59,22 @@ impl Fdtd {
         painted: &Painted3,
         on_progress: OnProgress<'_>,
     ) -> Result<(Traces, Stats), FdtdError> {
-        self.solve_upright(model, Cow::Borrowed(painted), true, on_progress)
+        self.solve_upright(model, Cow::Borrowed(painted), Manner { skip: true, checkpoints: None }, on_progress)
+    }
+
+    /// As [`Fdtd::solve_painted_three`], with checkpoints to go on from.
+    ///
+    /// # Errors
+    /// See [`FdtdError`].
+    pub fn solve_painted_three_kept(
+        &self,
+        model: &Model,
+        painted: &Painted3,
+        checkpoints: &Checkpoints<'_>,
+        on_progress: OnProgress<'_>,
+    ) -> Result<(Traces, Stats), FdtdError> {
+        let manner = Manner { skip: true, checkpoints: Some(checkpoints) };
+        self.solve_upright(model, Cow::Borrowed(painted), manner, on_progress)
     }
 
     /// Runs a painted model, all of its nodes in every step where `skip` is false, for measurements and tests; the traces
@@ -64,7 +89,7 @@ impl Fdtd {
         skip: bool,
         on_progress: OnProgress<'_>,
     ) -> Result<(Traces, Stats), FdtdError> {
-        self.solve_upright(model, Cow::Borrowed(painted), skip, on_progress)
+        self.solve_upright(model, Cow::Borrowed(painted), Manner { skip, checkpoints: None }, on_progress)
     }
 
     /// Turns a two-dimensional model so that y is its invariant axis, and runs it.
@@ -72,15 +97,15 @@ impl Fdtd {
         &self,
         model: &Model,
         painted: Cow<'_, Painted3>,
-        skip: bool,
+        manner: Manner<'_>,
         on_progress: OnProgress<'_>,
     ) -> Result<(Traces, Stats), FdtdError> {
         let Some(turn) = Turn::of(model) else {
-            return self.solve_setup(model, Setup3::new(model, painted)?, skip, on_progress);
+            return self.solve_setup(model, Setup3::new(model, painted)?, manner, on_progress);
         };
         let turned = turn.model(model);
         let setup = Setup3::new(&turned, Cow::Owned(turn.painted(&painted)));
-        let run = setup.and_then(|setup| self.solve_setup(&turned, setup, skip, on_progress));
+        let run = setup.and_then(|setup| self.solve_setup(&turned, setup, manner, on_progress));
         let (traces, stats) = run.map_err(|error| turn.error_back(error))?;
         Ok((turn.traces_back(model, traces), stats))
     }
@@ -90,14 +115,14 @@ impl Fdtd {
         &self,
         model: &Model,
         mut setup: Setup3<'_>,
-        skip: bool,
+        manner: Manner<'_>,
         on_progress: OnProgress<'_>,
     ) -> Result<(Traces, Stats), FdtdError> {
         let bytes = bytes_needed(&setup, self.precision);
         check_memory(bytes, available_memory())?;
         let (probes, mut stats) = match self.precision {
-            Precision::Single => self.run_three::<f32>(model, &mut setup, skip, on_progress)?,
-            Precision::Double => self.run_three::<f64>(model, &mut setup, skip, on_progress)?,
+            Precision::Single => self.run_three::<f32>(model, &mut setup, manner, on_progress)?,
+            Precision::Double => self.run_three::<f64>(model, &mut setup, manner, on_progress)?,
         };
         stats.bytes = bytes;
         Ok((traces(self.precision, model, &setup, probes), stats))
@@ -107,16 +132,17 @@ impl Fdtd {
         &self,
         model: &Model,
         setup: &mut Setup3<'_>,
-        skip: bool,
+        manner: Manner<'_>,
         on_progress: OnProgress<'_>,
     ) -> Result<(Vec<Probe>, Stats), FdtdError> {
         let instruction_set = self.instruction_set.resolve()?.set();
         let asked = self.threads.or_else(|| model.threads.and_then(NonZeroUsize::new));
         let wanted = asked.or_else(|| std::thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
         let threads = team::worthwhile_threads(model.grid.cell_count(), model.grid.cells[0], wanted);
-        let shared = Shared::<T>::new(setup, instruction_set, skip);
+        let shared = Shared::<T>::new(setup, instruction_set, manner.skip);
         let planes = team::planes(setup, &shared);
-        let (probes, wall) = team::run(setup, &shared, planes, threads, on_progress)?;
+        let mut keeper = manner.checkpoints.map(|checkpoints| Keeper::new(checkpoints, model, self.precision));
+        let (probes, wall) = team::run(setup, &shared, planes, threads, keeper.as_mut(), on_progress)?;
         let cell_steps = model.grid.cell_count() as u64 * setup.iterations as u64;
         let wall = Seconds(wall.as_secs_f64());
         Ok((probes, Stats { wall, cell_steps, bytes: 0, threads, instruction_set }))

@@ -10,6 +10,7 @@
 //! `H mu0 A/dt` with the area `A` of its face, also in V.
 
 use super::super::real::Real;
+use super::super::state::{Numbers, State};
 
 /// Rows are padded to whole multiples of this many numbers (64 bytes in single precision).
 pub const LANES: usize = 16;
@@ -67,6 +68,14 @@ impl<T: Real> Sheet<T> {
     #[inline(always)]
     pub fn south(&self, j: usize, k: usize, count: usize) -> &[T] {
         &self.data[self.origin + j * self.stride + k..][..count]
+    }
+}
+
+impl<T: Real> State for Sheet<T> {
+    fn visit(&mut self, visitor: &mut dyn FnMut(Numbers<'_>)) {
+        let Self { data, origin, stride: _ } = self;
+        let rows = data.len() - 3 * LANES;
+        visitor(T::numbers(&mut data[*origin..][..rows]));
     }
 }
 

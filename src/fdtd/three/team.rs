@@ -7,12 +7,13 @@
 //! operations in the same order whoever does it, so the bits do not depend on the number of threads.
 
 use std::num::NonZeroUsize;
-use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 use std::time::{Duration, Instant};
 
 use super::super::FdtdError;
+use super::super::checkpoint::Keeper;
+use super::super::state::{Numbers, State};
 use super::instructions::{Number, step};
 use super::plane::{Plane, Probe, Scratch, Shared, Step};
 use super::setup::{Setup3, axis_of};
@@ -39,6 +40,10 @@ struct Team<'a, T> {
     /// Plane `i` is number `i + 1`; the first and the last lie beyond the outer walls.
     planes: Vec<RwLock<Plane<T>>>,
     done: Vec<Done>,
+    /// Steps made when the passes begin.
+    begun: usize,
+    /// The pass before which all stop, so that all planes have made the same steps.
+    end: AtomicUsize,
     halt: AtomicBool,
     failure: Mutex<Option<FdtdError>>,
     limit: T,
@@ -59,49 +64,95 @@ pub fn planes<T: Number>(setup: &mut Setup3<'_>, shared: &Shared<T>) -> Vec<Plan
     std::iter::once(Plane::beyond(setup)).chain(inside).chain(std::iter::once(Plane::beyond(setup))).collect()
 }
 
-/// Runs all steps; returns what the receivers recorded and the wall time of the loop.
+/// What the thread that asks is told before a pass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Tick {
+    Go,
+    /// Stop when all planes have made the same steps.
+    Pause,
+    /// Stop at once.
+    Stop,
+}
+
+/// Runs all steps, those that a checkpoint holds left out; returns what the receivers recorded and the wall time of the
+/// loop.
 ///
 /// # Errors
-/// When a field diverges or the caller asks to stop.
+/// When a field diverges, the caller asks to stop, or the checkpoint is of something else.
 pub fn run<T: Number>(
     setup: &Setup3<'_>,
     shared: &Shared<T>,
-    planes: Vec<Plane<T>>,
+    mut planes: Vec<Plane<T>>,
     threads: usize,
+    mut keeper: Option<&mut Keeper<'_>>,
     on_progress: OnProgress<'_>,
 ) -> Result<(Vec<Probe>, Duration), FdtdError> {
-    let team = Team {
+    let loaded = keeper.as_mut().map(|keeper| keeper.load(planes.as_mut_slice())).transpose()?;
+    let mut team = Team {
         setup,
         shared,
         planes: planes.into_iter().map(RwLock::new).collect(),
         done: (0..threads).map(|_| Done(AtomicUsize::new(0))).collect(),
+        begun: loaded.unwrap_or(0),
+        end: AtomicUsize::new(usize::MAX),
         halt: AtomicBool::new(false),
         failure: Mutex::new(None),
         limit: T::of(setup.limit()),
     };
     let begin = Instant::now();
-    std::thread::scope(|scope| {
-        let team = &team;
-        for me in 1..threads {
-            scope.spawn(move || team.passes(me, &mut |_| ControlFlow::Continue(())));
-        }
-        let mut last: Option<Instant> = None;
-        team.passes(0, &mut |done| {
+    let mut last: Option<Instant> = None;
+    loop {
+        let (mut asked, due) = (false, keeper.as_ref().map(|keeper| (keeper.due(), keeper.stop_from())));
+        team.leg(&mut |done| {
             let now = Instant::now();
-            if last.is_some_and(|last| now - last < PROGRESS_INTERVAL) {
-                return ControlFlow::Continue(());
+            if last.is_none_or(|last| now - last >= PROGRESS_INTERVAL) {
+                last = Some(now);
+                asked = on_progress(Progress { done, total: setup.iterations }).is_break();
             }
-            last = Some(now);
-            on_progress(Progress { done, total: setup.iterations })
+            match due {
+                Some((_, from)) if asked => {
+                    if now >= from {
+                        Tick::Pause
+                    } else {
+                        Tick::Stop
+                    }
+                }
+                Some((due, _)) if now >= due => Tick::Pause,
+                _ => {
+                    if asked {
+                        Tick::Stop
+                    } else {
+                        Tick::Go
+                    }
+                }
+            }
         });
-    });
-    let wall = begin.elapsed();
-    if let Some(failure) = lock(&team.failure).take() {
-        return Err(failure);
+        if let Some(failure) = lock(&team.failure).take() {
+            return Err(failure);
+        }
+        let passes = team.end.swap(usize::MAX, Ordering::Relaxed);
+        team.begun = team.begun.saturating_add(passes.saturating_mul(STAGES));
+        if team.begun >= setup.iterations {
+            break;
+        }
+        if let Some(keeper) = &mut keeper {
+            keeper.write(team.begun, team.planes.as_mut_slice());
+        }
+        if asked {
+            return Err(FdtdError::Stopped);
+        }
+        team.done.iter_mut().for_each(|done| *done.0.get_mut() = 0);
     }
+    let wall = begin.elapsed();
     let _ = on_progress(Progress { done: setup.iterations, total: setup.iterations });
     let planes = team.planes.into_iter().map(|plane| plane.into_inner().unwrap_or_else(PoisonError::into_inner));
     Ok((planes.flat_map(|plane| plane.probes).collect(), wall))
+}
+
+impl<S: State> State for RwLock<S> {
+    fn visit(&mut self, visitor: &mut dyn FnMut(Numbers<'_>)) {
+        self.get_mut().unwrap_or_else(PoisonError::into_inner).visit(visitor);
+    }
 }
 
 /// Tells the others to stop when this thread panics.
@@ -116,16 +167,32 @@ impl Drop for HaltOnPanic<'_> {
 }
 
 impl<T: Number> Team<'_, T> {
-    fn passes(&self, me: usize, tick: &mut dyn FnMut(usize) -> ControlFlow<()>) {
+    /// Runs passes until the steps are done or the first thread is told to pause or stop.
+    fn leg(&self, tick: &mut dyn FnMut(usize) -> Tick) {
+        std::thread::scope(|scope| {
+            for me in 1..self.done.len() {
+                scope.spawn(move || self.passes(me, &mut |_| Tick::Go));
+            }
+            self.passes(0, tick);
+        });
+    }
+
+    fn passes(&self, me: usize, tick: &mut dyn FnMut(usize) -> Tick) {
         let _guard = HaltOnPanic(&self.halt);
         let mut scratch = Scratch::new(self.shared);
         let (nx, steps) = (self.setup.painted.cells[0], self.setup.iterations);
         // Positions of a pass's front until its last stage has left the grid.
         let positions = nx + STAGES - 1;
-        for pass in (me..steps.div_ceil(STAGES)).step_by(self.done.len()) {
-            let first = pass * STAGES;
-            if tick(first).is_break() {
-                self.fail(FdtdError::Stopped);
+        for pass in (me..(steps - self.begun).div_ceil(STAGES)).step_by(self.done.len()) {
+            if pass >= self.end.load(Ordering::Relaxed) {
+                return;
+            }
+            let first = self.begun + pass * STAGES;
+            match tick(first) {
+                Tick::Go => {}
+                // Nobody has begun a later pass: it would have to wait for this one.
+                Tick::Pause => self.end.store(pass + self.done.len(), Ordering::Relaxed),
+                Tick::Stop => self.fail(FdtdError::Stopped),
             }
             for front in 0..positions {
                 let needed = pass.saturating_sub(1) * positions + (front + STAGES + 1).min(positions);
@@ -148,7 +215,7 @@ impl<T: Number> Team<'_, T> {
     /// Records what the receivers of a plane hold before a step, and takes the step unless it is the last.
     fn step_plane(&self, i: usize, number: usize, scratch: &mut Scratch<T>) {
         let mut plane = write(&self.planes[i + 1]);
-        let (mut found, last) = (plane.record(self.limit), number + 1 == self.setup.iterations);
+        let (mut found, last) = (plane.record(number, self.limit), number + 1 == self.setup.iterations);
         if !last && self.shared.cones.touches(i, number) {
             let (west, east) = (read(&self.planes[i]), read(&self.planes[i + 2]));
             let action = Step { shared: self.shared, step: number, west: &west, east: &east };
@@ -205,6 +272,7 @@ fn write<T>(plane: &RwLock<T>) -> RwLockWriteGuard<'_, T> {
 #[cfg(test)]
 mod tests {
     use std::borrow::Cow;
+    use std::ops::ControlFlow;
 
     use proptest::prelude::*;
 
@@ -303,7 +371,7 @@ mod tests {
         let mut shared = Shared::<T>::new(&setup, set, order.skip);
         shared.cones.narrow(order.narrower);
         let planes = planes(&mut setup, &shared);
-        let (mut probes, _) = run(&setup, &shared, planes, order.threads, &|_| ControlFlow::Continue(()))?;
+        let (mut probes, _) = run(&setup, &shared, planes, order.threads, None, &|_| ControlFlow::Continue(()))?;
         probes.sort_by_key(|probe| probe.receiver);
         Ok(probes.into_iter().flat_map(|probe| probe.samples).flatten().map(f64::to_bits).collect())
     }
