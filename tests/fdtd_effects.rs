@@ -2,8 +2,13 @@
 
 mod fdtd_support;
 
-use ballast_gpr::fdtd::Precision;
-use ballast_gpr::model::{DebyePole, Material, MaterialId, Model};
+use std::ops::ControlFlow;
+
+use ballast_gpr::fdtd::{Fdtd, Precision};
+use ballast_gpr::model::{
+    Axis, DebyePole, Excitation, Grid, HertzianDipole, MagneticDipole, Material, MaterialId, Model, Receiver, Source,
+    TimeWindow, VoltageSource, Waveform, WaveformKind, paint3,
+};
 use fdtd_support::{box_of, ez, relative_l2, scene, solve};
 
 /// A stone in air under a source, 120 x 100 cells of 2 mm, 600 steps.
@@ -92,4 +97,43 @@ fn effects_that_are_needed_matter() {
     ] {
         assert!(moved > 1e-3, "{effect} moves the trace by {moved:e} only");
     }
+}
+
+/// Traces of the same model in space, to the bit.
+fn in_space(model: &Model) -> Vec<u64> {
+    let fdtd = Fdtd { precision: Precision::Single, ..Fdtd::default() };
+    let (traces, _) = fdtd.solve_painted_three(model, &paint3(model).unwrap(), &|_| ControlFlow::Continue(())).unwrap();
+    let receivers = traces.receivers.iter().flat_map(|receiver| &receiver.components);
+    receivers.flat_map(|trace| trace.samples.iter().map(|v| v.to_bits())).collect()
+}
+
+/// A magnetic dipole without amplitude, and a voltage behind 1e300 ohm, change no bit; one volt behind 50 ohm does.
+#[test]
+fn sources_without_strength_are_absent_to_the_bit() {
+    let grid = Grid { cells: [24, 25, 26], spacing: [0.002; 3] };
+    let mut model = Model::new("", grid, TimeWindow::Iterations(120));
+    model.pml_cells = Some([5; 6]);
+    let pulse =
+        |amplitude| Waveform { id: format!("{amplitude}"), kind: WaveformKind::Ricker, amplitude, frequency: 5e9 };
+    model.waveforms = vec![pulse(1.0), pulse(0.0)];
+    let (excitation, position) = (Excitation { start: 0.0, stop: None }, [0.024, 0.026, 0.024]);
+    let dipole = HertzianDipole { polarisation: Axis::Y, position, waveform: 0, excitation };
+    model.sources.push(Source::HertzianDipole(dipole));
+    model.receivers.push(Receiver { position: [0.02, 0.028, 0.026], name: None });
+    let without = in_space(&model);
+    let with = |source: Source| {
+        let mut model = model.clone();
+        model.sources.push(source);
+        in_space(&model)
+    };
+    let (polarisation, position) = (Axis::X, [0.022, 0.026, 0.026]);
+    let magnetic = MagneticDipole { polarisation, position, waveform: 1, excitation };
+    assert!(with(Source::MagneticDipole(magnetic)) == without);
+    let voltage = |resistance, waveform| {
+        Source::VoltageSource(VoltageSource { polarisation, position, resistance, waveform, excitation })
+    };
+    assert!(with(voltage(1e300, 1)) == without);
+    assert!(with(voltage(50.0, 0)) != without);
+    // A voltage of zero that is on is a short circuit, and a resistor without a voltage takes its share.
+    assert!(with(voltage(0.0, 1)) != without && with(voltage(50.0, 1)) != without);
 }

@@ -119,7 +119,7 @@ fn oblong_cells_agree_with_hankels_function() {
     let mut model = scene([200, 140], 0.002, 700, [100, 70], &[]);
     model.grid.spacing[1] = 0.003;
     let at = |i: usize, j: usize| [i as f64 * 0.002, j as f64 * 0.003, 0.0];
-    let ballast_gpr::model::Source::HertzianDipole(dipole) = &mut model.sources[0];
+    let ballast_gpr::model::Source::HertzianDipole(dipole) = &mut model.sources[0] else { panic!("a current") };
     dipole.position = at(100, 70);
     let receiver = |position| ballast_gpr::model::Receiver { position, name: None };
     model.receivers = vec![receiver(at(124, 70)), receiver(at(100, 86))];

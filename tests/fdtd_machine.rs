@@ -60,7 +60,7 @@ fn bits_do_not_depend_on_threads_or_instructions() {
 fn bits_do_not_depend_on_the_order_of_steps() {
     let mut model = everything(250);
     model.sources.push(model.sources[0].clone());
-    let Source::HertzianDipole(second) = &mut model.sources[1];
+    let Source::HertzianDipole(second) = &mut model.sources[1] else { panic!("a current") };
     (second.position, second.excitation.start) = ([0.1, 0.46, 0.0], 4e-10);
     let painted = paint(&model).unwrap();
     assert!((0.3..0.9).contains(&reach(&model, &painted).unwrap().share_saved));
@@ -105,7 +105,7 @@ fn traces_fulfil_faradays_law() {
     model.grid.spacing = [0.002, 0.003, 0.004];
     let node = |i: usize, j: usize| [i as f64 * 0.002, j as f64 * 0.003, 0.0];
     let receiver = |position| Receiver { position, name: None };
-    let Source::HertzianDipole(dipole) = &mut model.sources[0];
+    let Source::HertzianDipole(dipole) = &mut model.sources[0] else { panic!("a current") };
     dipole.position = node(20, 20);
     model.receivers = vec![receiver(node(24, 23)), receiver(node(25, 23)), receiver(node(24, 24))];
     let traces = run(&fdtd(Precision::Double, 1, InstructionSet::Auto), &model).unwrap();
@@ -124,7 +124,7 @@ fn traces_fulfil_faradays_law() {
 fn what_cannot_be_done_is_named() {
     let base = || scene([60, 60], 0.002, 10, [30, 30], &[[35, 30]]);
     let dipole = |model: &mut Model, position: [f64; 3]| {
-        let Source::HertzianDipole(dipole) = &mut model.sources[0];
+        let Source::HertzianDipole(dipole) = &mut model.sources[0] else { panic!("a current") };
         dipole.position = position;
     };
     let message = |change: &dyn Fn(&mut Model)| {
@@ -154,7 +154,7 @@ fn what_cannot_be_done_is_named() {
         (
             "source 1 is polarised along x",
             message(&|m| {
-                let Source::HertzianDipole(dipole) = &mut m.sources[0];
+                let Source::HertzianDipole(dipole) = &mut m.sources[0] else { panic!("a current") };
                 dipole.polarisation = Axis::X;
             }),
         ),

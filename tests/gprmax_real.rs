@@ -233,8 +233,8 @@ fn the_current_of_a_source_is_that_of_gprmax() {
         let mut model = scene_with_voxels();
         model.objects.clear();
         model.time_window = TimeWindow::Iterations(500);
-        model.waveforms[0].kind = kind;
-        let Source::HertzianDipole(dipole) = &mut model.sources[0];
+        model.waveforms[0].kind = kind.clone();
+        let Source::HertzianDipole(dipole) = &mut model.sources[0] else { panic!("a current") };
         dipole.excitation = Excitation { start: 2e-10, stop: Some(1.6e-9) };
         let paths = write_input(&model, folder.path(), "scene", &InputOptions::default()).unwrap();
         let (theirs, ours) = (folder.path().join("theirs.h5"), folder.path().join("ours.h5"));
@@ -259,7 +259,7 @@ fn tools_of_gprmax_read_what_we_write() {
         (read_model(&case.join("scene.in")).unwrap(), read_traces(&case.join("out_f64.h5")).unwrap());
     for run in 1..=2 {
         write_traces(&folder.path().join(format!("line{run}.h5")), &traces, &model).unwrap();
-        let Source::HertzianDipole(dipole) = &mut model.sources[0];
+        let Source::HertzianDipole(dipole) = &mut model.sources[0] else { panic!("a current") };
         dipole.position[0] += 0.02;
         model.receivers.iter_mut().for_each(|receiver| receiver.position[0] += 0.02);
     }

@@ -109,7 +109,7 @@ fn errors_name_what_is_wrong() {
         run.map_or_else(|error| error.to_string(), |_| "no error".into())
     };
     let dipole = |model: &mut Model, place: [f64; 3]| {
-        let Source::HertzianDipole(dipole) = &mut model.sources[2];
+        let Source::HertzianDipole(dipole) = &mut model.sources[2] else { panic!("a current") };
         dipole.position = place;
     };
     for (begin, found) in [

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::cli::error::CliError;
-use crate::model::{Model, Painted, Source};
+use crate::model::{Model, Painted};
 use crate::plot::{Figure as _, MapFigure, MapLayer, MapSymbol, SymbolKind};
 use crate::raster::{self, Placement};
 use crate::scene::Scene;
@@ -21,13 +21,8 @@ pub fn write(scene: &Scene, model: &Model, painted: &Painted, folder: &Path) -> 
     let pml = model.absorbing_cells().map(|cells| cells as f64);
     figure.absorbing = Some([pml[0] * dx, pml[1] * dy, pml[3] * dx, pml[4] * dy]);
     for source in &model.sources {
-        let Source::HertzianDipole(dipole) = source;
-        figure.symbols.push(MapSymbol {
-            x: dipole.position[0],
-            y: dipole.position[1],
-            label: "source".into(),
-            kind: SymbolKind::Source,
-        });
+        let [x, y, _] = source.position();
+        figure.symbols.push(MapSymbol { x, y, label: "source".into(), kind: SymbolKind::Source });
     }
     for receiver in &model.receivers {
         figure.symbols.push(MapSymbol {

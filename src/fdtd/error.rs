@@ -101,6 +101,48 @@ pub enum FdtdError {
         /// Its direction.
         axis: Axis,
     },
+    /// A source that only the way of three dimensions knows, in a painted model of the plane.
+    #[error("source {number} is a {kind}, which the loops for two dimensions do not know")]
+    NotInPlane {
+        /// Place in the list of sources, from 1.
+        number: usize,
+        /// What it is.
+        kind: &'static str,
+    },
+    /// A voltage source with a resistance that is none.
+    #[error("source {number} has a resistance of {resistance} ohm, it must be 0 or more and finite")]
+    Resistance {
+        /// Place in the list of sources, from 1.
+        number: usize,
+        /// Its resistance, ohm.
+        resistance: f64,
+    },
+    /// A voltage without resistance in a dispersive material.
+    #[error(
+        "source {number}, a voltage without resistance, lies in a dispersive material, at node ({}, {}, {})\n\n\
+         hint: `--solver gprmax` runs the file in gprMax itself",
+        node[0], node[1], node[2]
+    )]
+    SetInDispersive {
+        /// Place in the list of sources, from 1.
+        number: usize,
+        /// Its node.
+        node: [usize; 3],
+    },
+    /// A magnetic dipole on the outer wall, where H across it is zero, or beyond the last face.
+    #[error(
+        "source {number}, a magnetic dipole along {}, lies on the outer wall or at its last node, ({}, {}, {}), where H stays \
+         zero\n\nhint: move it inwards",
+        axis.name(), node[0], node[1], node[2]
+    )]
+    MagneticOnWall {
+        /// Place in the list of sources, from 1.
+        number: usize,
+        /// Its direction.
+        axis: Axis,
+        /// Its node.
+        node: [usize; 3],
+    },
     /// A source with a waveform that the model does not hold.
     #[error("source {number} asks for waveform number {waveform}, but the model has {waveforms}")]
     NoSuchWaveform {

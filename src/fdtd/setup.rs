@@ -116,7 +116,9 @@ fn drive(
     number: usize,
     source: &Source,
 ) -> Result<NodeDrive, FdtdError> {
-    let Source::HertzianDipole(dipole) = source;
+    let Source::HertzianDipole(dipole) = source else {
+        return Err(FdtdError::NotInPlane { number, kind: source.kind() });
+    };
     let [i, j, _] = node_in_grid(model, dipole.position, || format!("source {number}"))?;
     if dipole.polarisation != Axis::Z {
         return Err(FdtdError::Polarisation { number, axis: dipole.polarisation });
@@ -136,11 +138,11 @@ fn drive(
     let excitation = dipole.excitation;
     let series = (0..model.iterations()).map(|n| {
         let t = n as f64 * dt;
-        if t < excitation.start || excitation.stop.is_some_and(|stop| t > stop) {
+        if !excitation.is_on(t) {
             return 0.0;
         }
         // A line current of 1 A: dl/(dx dy dz) with dl = dz.
-        edge.source * waveform.value(t + 0.5 * dt - excitation.start) / (dx * dy)
+        edge.source * waveform.sample(t + 0.5 * dt - excitation.start, dt) / (dx * dy)
     });
     Ok(NodeDrive { i, j, series: series.collect() })
 }

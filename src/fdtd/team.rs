@@ -401,7 +401,7 @@ mod tests {
                 }
                 let template = made.sources.remove(0);
                 for ((i, j), late) in sources {
-                    let Source::HertzianDipole(mut dipole) = template.clone();
+                    let Source::HertzianDipole(mut dipole) = template.clone() else { panic!("a current") };
                     dipole.position = [(1 + i % (nx - 1)) as f64 * dx, (1 + j % (ny - 1)) as f64 * dy, 0.0];
                     dipole.excitation.start = late as f64 * 4e-12;
                     made.sources.push(Source::HertzianDipole(dipole));

@@ -97,7 +97,7 @@ pub struct Resolution {
 }
 
 impl Resolution {
-    /// Reads the resolution off a model; `None` without a source. Perfect conductors hold no wave and do not count.
+    /// Reads the resolution off a model; `None` without a source whose pulse has a highest frequency. Perfect conductors hold no wave and do not count.
     pub fn of(model: &Model, painted: &Painted) -> Option<Self> {
         Self::of_present(model, painted.cells_per_material(model.materials.len()))
     }
@@ -109,11 +109,7 @@ impl Resolution {
 
     /// The same from how many cells hold each material.
     fn of_present(model: &Model, present: Vec<usize>) -> Option<Self> {
-        use super::Source;
-        let highest = |source: &Source| {
-            let Source::HertzianDipole(dipole) = source;
-            model.waveforms.get(dipole.waveform).map(super::Waveform::highest_frequency)
-        };
+        let highest = |source: &super::Source| model.waveforms.get(source.waveform())?.highest_frequency();
         let frequency = model.sources.iter().filter_map(highest).max_by(f64::total_cmp)?;
         let candidates = model.materials.iter().zip(present).filter(|(m, cells)| *cells > 0 && !m.is_pec());
         let of = |m: &super::Material| (m.id.clone(), m.eps_r_at(frequency) * m.mu_r);

@@ -16,8 +16,10 @@ mod painted;
 mod painted3;
 mod palette;
 mod route;
+mod sampled;
 mod source;
 mod spec;
+mod waveform;
 
 pub use check::{
     CheckError, LEAST_CELLS_PER_WAVELENGTH, Resolution, WANTED_CELLS_PER_WAVELENGTH, available_memory,
@@ -34,5 +36,7 @@ pub use painted::Painted;
 pub use painted3::Painted3;
 pub use palette::{EdgeMaterial, FaceMaterial};
 pub use route::Route;
-pub use source::{Axis, Excitation, HertzianDipole, Receiver, Source, Waveform, WaveformKind};
+pub use sampled::{Between, Beyond, Sampled};
+pub use source::{Axis, Excitation, HertzianDipole, MagneticDipole, Receiver, Source, VoltageSource};
 pub use spec::{Model, TimeWindow};
+pub use waveform::{Waveform, WaveformKind};

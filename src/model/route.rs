@@ -1,6 +1,6 @@
 //! Which way through the embedded solver a model takes.
 
-use super::{Material, MaterialId, Model};
+use super::{Material, MaterialId, Model, Source};
 
 /// The way through the embedded solver that a model takes.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -35,8 +35,12 @@ impl Model {
         // Whatever an object is made of counts, whether or not a cell of it stays after painting.
         let used = |index: usize| self.objects.iter().any(|object| object.holds(MaterialId(index as u16)));
         let magnetic = |(index, material): &(usize, &Material)| material.is_magnetic() && used(*index);
-        let (_, material) = self.materials.iter().enumerate().find(magnetic)?;
-        Some(format!("`{}` is magnetic", material.id))
+        if let Some((_, material)) = self.materials.iter().enumerate().find(magnetic) {
+            return Some(format!("`{}` is magnetic", material.id));
+        }
+        let known = |source: &Source| matches!(source, Source::HertzianDipole(_));
+        let unknown = self.sources.iter().position(|source| !known(source))?;
+        Some(format!("source {} is a {}", unknown + 1, self.sources[unknown].kind()))
     }
 }
 

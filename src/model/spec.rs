@@ -91,8 +91,7 @@ impl Model {
         };
         let mut model = self.clone();
         for source in &mut model.sources {
-            let Source::HertzianDipole(dipole) = source;
-            dipole.position = moved(dipole.position, self.source_steps);
+            *source.position_mut() = moved(source.position(), self.source_steps);
         }
         for receiver in &mut model.receivers {
             receiver.position = moved(receiver.position, self.receiver_steps);
@@ -149,10 +148,10 @@ mod tests {
         (model.source_steps, model.receiver_steps) = ([0.04, 0.0, 0.0], [0.04, 0.0, 0.0]);
         assert_eq!(model.at_trace(0), model);
         let fifth = model.at_trace(4);
-        let Source::HertzianDipole(dipole) = &fifth.sources[0];
+        let source = fifth.sources[0].position();
         let node = |x: f64| grid.node(0, x);
-        assert_eq!((node(dipole.position[0]), node(fifth.receivers[0].position[0])), (170, 190));
-        assert_eq!(dipole.position[1], 0.3);
+        assert_eq!((node(source[0]), node(fifth.receivers[0].position[0])), (170, 190));
+        assert_eq!(source[1], 0.3);
     }
 
     /// Iterations that gprMax 4.0.1 reports for its window and step (`#time_window: 4e-9`, 2 mm, 2-D).

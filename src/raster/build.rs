@@ -234,7 +234,7 @@ impl Builder {
         let antenna = &scene.spec.antenna;
         self.model.waveforms.push(Waveform {
             id: "pulse".into(),
-            kind: antenna.waveform,
+            kind: antenna.waveform.clone(),
             amplitude: 1.0,
             frequency: antenna.frequency.si(),
         });

@@ -77,7 +77,7 @@ fn every_supported_command_lands_in_the_model() {
     );
     assert!(model.materials[2].averagable && !model.materials[3].averagable && model.materials[4].is_pec());
     assert_eq!(model.waveforms[0].kind, WaveformKind::GaussianDotNorm);
-    let Source::HertzianDipole(dipole) = &model.sources[0];
+    let Source::HertzianDipole(dipole) = &model.sources[0] else { panic!("a current") };
     assert_eq!((dipole.polarisation, dipole.excitation.start, dipole.excitation.stop), (Axis::Z, 1e-10, Some(2e-9)));
     assert_eq!(model.receivers[1].name.as_deref(), Some("right"));
     // Objects keep the user's coordinates, in file order, whatever stands between them.
@@ -116,6 +116,26 @@ fn three_dimensional_scenes_are_read() {
         model.receivers.iter().map(|r| [0, 1, 2].map(|axis| model.grid.node(axis, r.position[axis]))).collect();
     assert_eq!(nodes, [[10, 15, 20], [10, 15, 30], [15, 15, 20], [15, 15, 30], [20, 15, 20], [20, 15, 30]]);
     assert_eq!(model.source_steps, [0.01, 0.0, 0.0]);
+}
+
+/// In a grid along z voltages and currents are along z, magnetic dipoles across; a resistance stands before the pulse.
+#[test]
+fn voltages_and_magnetic_dipoles_are_read() {
+    let text = "#domain: 0.1 0.1 0.002\n#dx_dy_dz: 0.002 0.002 0.002\n#time_window: 300\n#waveform: contsine 2 1e9 w\n\
+        #magnetic_dipole: y 0.04 0.05 0 w\n#voltage_source: z 0.05 0.06 0 75 w 1e-10 2e-10\n#voltage_source: Z 0.06 0.06 0 0 w\n";
+    let model = read(text).unwrap().model;
+    assert!(!model.is_plane());
+    let resistances: Vec<_> = model
+        .sources
+        .iter()
+        .map(|source| if let Source::VoltageSource(voltage) = source { Some(voltage.resistance) } else { None })
+        .collect();
+    assert_eq!(resistances, [None, Some(75.0), Some(0.0)]);
+    let axes: Vec<_> = model.sources.iter().map(Source::polarisation).collect();
+    assert_eq!(axes, [Axis::Y, Axis::Z, Axis::Z]);
+    assert_eq!(model.sources[0].position(), [0.04, 0.05, 0.0]);
+    let excitation = model.sources[1].excitation();
+    assert_eq!((excitation.start, excitation.stop), (1e-10, Some(2e-10)));
 }
 
 /// The voxels of case 11: -1 leaves a cell, 0 is stone, 1 is fines; counts by h5py.
@@ -182,8 +202,9 @@ fn errors_name_the_line_and_what_to_do() {
         "FILE line 4: `#rx` has 4 parameters\n\nhint: `#rx: X Y Z [NAME COMPONENT ...]`"
     );
     assert_eq!(
-        error("#waveform: sine 1 1e9 w"),
-        "FILE line 4: `sine` is not a waveform that the embedded solver knows, which `#waveform` wants there: one of ricker, gaussian, gaussiandot, gaussiandotnorm, gaussiandotdot, gaussiandotdotnorm"
+        error("#waveform: user 1 1e9 w"),
+        "FILE line 4: `user` is not a waveform that the embedded solver knows, which `#waveform` wants there: one of ricker, gaussian, gaussiandot, gaussiandotnorm, gaussiandotdot, gaussiandotdotnorm, \
+         gaussianprime, gaussiandoubleprime, gauspulse, sine, contsine, impulse"
     );
     assert_eq!(
         error("#dispersive_averaging: y").lines().next(),

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use ballast_gpr::gprmax::{InputOptions, Note, read_input, read_model, write_input};
 use ballast_gpr::model::{
-    Axis, DebyePole, Excitation, Grid, HertzianDipole, Material, MaterialId, Model, Object, Receiver, Source,
-    TimeWindow, Voxels, Waveform, WaveformKind,
+    Axis, DebyePole, Excitation, Grid, HertzianDipole, MagneticDipole, Material, MaterialId, Model, Object, Receiver,
+    Source, TimeWindow, VoltageSource, Voxels, Waveform, WaveformKind,
 };
 use proptest::prelude::*;
 
@@ -87,7 +87,7 @@ fn a_small_model_is_laid_out_for_people_too() {
     model.threads = Some(2);
     model.stability_factor = 0.99;
     model.time_window = TimeWindow::Iterations(500);
-    let Source::HertzianDipole(dipole) = &mut model.sources[0];
+    let Source::HertzianDipole(dipole) = &mut model.sources[0] else { panic!("a current") };
     dipole.excitation = Excitation { start: 1e-10, stop: Some(2e-9) };
     let (text, names) = written(&model, &InputOptions::default());
     let text = text.replace(env!("CARGO_PKG_VERSION"), "0.1.0");
@@ -208,10 +208,11 @@ fn meaning(model: &Model) -> Meaning {
         .sources
         .iter()
         .map(|source| {
-            let Source::HertzianDipole(dipole) = source;
-            let stop = dipole.excitation.stop.unwrap_or(end).min(end);
-            let wave = &model.waveforms[dipole.waveform];
-            format!("{:?} {:?} {wave:?} {:?} {stop:?}", dipole.polarisation, dipole.position, dipole.excitation.start)
+            let Excitation { start, stop } = source.excitation();
+            let (stop, wave) = (stop.unwrap_or(end).min(end), &model.waveforms[source.waveform()]);
+            let resistance = if let Source::VoltageSource(voltage) = source { Some(voltage.resistance) } else { None };
+            let (axis, position) = (source.polarisation(), source.position());
+            format!("{} {axis:?} {position:?} {resistance:?} {wave:?} {start:?} {stop:?}", source.kind())
         })
         .collect();
     Meaning {
@@ -293,6 +294,7 @@ prop_compose! {
         pml in prop::option::of(prop::array::uniform4(0..12usize)), threads in prop::option::of(1..9usize), factor in 0.01..=1.0f64,
         wave in (proptest::sample::select(WaveformKind::ALL.to_vec()), -10.0..10.0f64, 1e8..5e9f64),
         at in (0.0..1.0f64, 0.0..1.0f64), start in prop_oneof![Just(0.0), 1e-13..1e-12f64], stop in prop::option::of(1e-11..1e-10f64),
+        source in prop::option::of((any::<bool>(), prop_oneof![Just(0.0), 1e-3..1e4f64])),
         steps in prop::array::uniform2(prop_oneof![Just([0.0; 3]), prop::array::uniform3(-0.1..0.1f64)]),
         name in prop::option::of("[a-zA-Z0-9_.-]{1,8}"), title in "[ -~é]{0,20}",
         cells in Just(cells), spacing in Just(spacing),
@@ -307,8 +309,16 @@ prop_compose! {
         let (kind, amplitude, frequency) = wave;
         model.waveforms.push(Waveform { id: "w1".into(), kind, amplitude, frequency });
         let position = [at.0 * cells.0 as f64 * spacing[0], at.1 * cells.1 as f64 * spacing[1], 0.0];
-        let dipole = HertzianDipole { polarisation: Axis::Z, position, waveform: 0, excitation: Excitation { start, stop } };
-        model.sources.push(Source::HertzianDipole(dipole));
+        let (polarisation, waveform, excitation) = (Axis::Z, 0, Excitation { start, stop });
+        model.sources.push(match source {
+            None => Source::HertzianDipole(HertzianDipole { polarisation, position, waveform, excitation }),
+            Some((true, resistance)) => {
+                Source::VoltageSource(VoltageSource { polarisation, position, resistance, waveform, excitation })
+            }
+            Some((false, _)) => {
+                Source::MagneticDipole(MagneticDipole { polarisation: Axis::Y, position, waveform, excitation })
+            }
+        });
         model.receivers.push(Receiver { position, name });
         [model.source_steps, model.receiver_steps] = steps;
         model

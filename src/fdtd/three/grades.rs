@@ -66,8 +66,8 @@ pub struct RowIndex {
 
 /// The entries of the palette on a row of edges.
 fn entries<'a>(setup: &'a Setup3<'_>, axis: usize, i: usize, j: usize) -> impl Iterator<Item = usize> + use<'a> {
-    let (edges, first) = (&setup.painted.edges[axis], setup.painted.node([i, j, 0]));
-    (first..first + setup.painted.cells[2]).map(|node| edges.get(node) as usize)
+    let first = setup.painted.node([i, j, 0]);
+    (first..first + setup.painted.cells[2]).map(move |place| setup.entry(axis, place))
 }
 
 /// Whether any edge of a row conducts.

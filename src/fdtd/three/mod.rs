@@ -1,7 +1,7 @@
 //! The Yee scheme in three dimensions, with gprMax's numerics: for every model of
 //! [`Route::Space`](crate::model::Route::Space).
 //!
-//! A model is painted, turned into coefficients (`setup`), cut into planes across x (`plane`, with `grades` for the
+//! A model is painted, turned into coefficients (`setup`, its sources `drive`), cut into planes across x (`plane`, with `grades` for the
 //! coefficients of its edges, `absorbing` and `poles` for its memories) and stepped by passes that follow one another
 //! through the planes (`team`); the loops over a row are in `kernel`. Rows that no wave has reached, or that no receiver will
 //! hear of, are not stepped (`reach`). An effect that a model does not call for has no array. Two-dimensional models (TE, TM
@@ -9,6 +9,7 @@
 //! three components and one row in a plane.
 
 mod absorbing;
+mod drive;
 mod grades;
 mod instructions;
 mod kernel;

@@ -1,9 +1,12 @@
 //! A plane of the grid across x with everything that acts on it, and its step.
 
+use std::ops::Range;
+
 use super::super::dispersion::overlap;
 use super::super::instructions::InstructionSet;
 use super::super::state::{Numbers, State};
 use super::absorbing::{Absorbing, Columns, Profiles, profiles};
+use super::drive::{Act, Drive};
 use super::grades::{Grades, Lookup, Table};
 use super::instructions::Number;
 use super::kernel::{
@@ -26,18 +29,63 @@ pub struct Plane<T> {
     /// `da`, `db` of each H component, where anything is magnetic.
     magnetic: Option<Box<[[Sheet<T>; 3]; 2]>>,
     absorbing: Option<Absorbing<T>>,
+    /// Sources that act on H, sorted by row.
+    magnets: Vec<PlaneDrive<T>>,
+    /// Sources that act on E, sorted by row, then in the order in which they act.
     drives: Vec<PlaneDrive<T>>,
     dispersion: Option<Dispersion<T>>,
     pub probes: Vec<Probe>,
 }
 
-/// A source within a plane.
+/// A source within a plane: a table of what it does at each step, and no state of its own.
 struct PlaneDrive<T> {
+    act: Act,
     j: usize,
     axis: usize,
     k: usize,
-    /// What is taken from E, per step.
+    /// What is taken from the field, or what E is set to, per step.
     series: Vec<T>,
+    /// Steps at which it acts.
+    on: Range<usize>,
+    /// What E is set to before the first step.
+    initial: Option<T>,
+}
+
+impl<T: Number> PlaneDrive<T> {
+    fn new(drive: &Drive) -> Self {
+        let Drive { act, axis, node: [_, j, k], on, .. } = drive.clone();
+        let series = drive.series.iter().map(|&v| T::of(v)).collect();
+        Self { act, j, axis, k, series, on, initial: drive.initial.map(T::of) }
+    }
+
+    /// Acts on the row that it lies in.
+    #[inline(always)]
+    fn act(&self, step: usize, e: &mut [Sheet<T>; 3], h: &mut [Sheet<T>; 3]) {
+        if !self.on.contains(&step) {
+            return;
+        }
+        let field = if self.act == Act::TakeH { &mut h[self.axis] } else { &mut e[self.axis] };
+        let field = &mut field.at_mut(self.j, self.k, 1)[0];
+        *field = if self.act == Act::SetE { self.series[step] } else { *field - self.series[step] };
+    }
+}
+
+/// Lets those of a plane's sources act that lie within some nodes of row `j`.
+#[inline(always)]
+fn drive_row<T: Number>(
+    drives: &[PlaneDrive<T>],
+    j: usize,
+    nodes: Range<usize>,
+    step: usize,
+    e: &mut [Sheet<T>; 3],
+    h: &mut [Sheet<T>; 3],
+) {
+    let first = drives.partition_point(|drive| drive.j < j);
+    for drive in drives[first..].iter().take_while(|drive| drive.j == j) {
+        if nodes.contains(&drive.k) {
+            drive.act(step, e, h);
+        }
+    }
 }
 
 /// A receiver within a plane, and what it has recorded.
@@ -136,6 +184,7 @@ impl<T: Number> Plane<T> {
             grades: None,
             magnetic: None,
             absorbing: None,
+            magnets: vec![],
             drives: vec![],
             dispersion: None,
             probes: vec![],
@@ -145,15 +194,10 @@ impl<T: Number> Plane<T> {
     /// Reads what lies on plane `i`; the fields come with [`Plane::add_fields`], when the painting may have been freed.
     pub fn new(setup: &Setup3<'_>, shared: &Shared<T>, i: usize) -> Self {
         let [_, ny, nz] = setup.painted.cells;
-        let mut drives: Vec<_> = setup
-            .drives
-            .iter()
-            .filter(|drive| drive.node[0] == i)
-            .map(|drive| {
-                let series = drive.series.iter().map(|&v| T::of(v)).collect();
-                PlaneDrive { j: drive.node[1], axis: drive.axis, k: drive.node[2], series }
-            })
-            .collect();
+        let here = setup.drives.iter().filter(|drive| drive.node[0] == i);
+        let (mut magnets, mut drives): (Vec<_>, Vec<_>) =
+            here.map(PlaneDrive::new).partition(|drive| drive.act == Act::TakeH);
+        magnets.sort_by_key(|drive| drive.j);
         drives.sort_by_key(|drive| drive.j);
         let probes = setup.receivers.iter().enumerate().filter(|(_, node)| node[0] == i);
         let probe = |(receiver, node): (usize, &[usize; 3])| Probe {
@@ -181,6 +225,7 @@ impl<T: Number> Plane<T> {
             h: std::array::from_fn(|_| Sheet::zeros(0, 0)),
             magnetic: setup.magnetic().then(|| Box::new([faces(0), faces(1)])),
             absorbing: None,
+            magnets,
             drives,
             dispersion: Dispersion::new(setup, i),
             probes: probes.map(probe).collect(),
@@ -190,7 +235,12 @@ impl<T: Number> Plane<T> {
     /// Allocates the fields and the absorbing memory of the plane.
     pub fn add_fields(self, setup: &Setup3<'_>, shared: &Shared<T>) -> Self {
         let absorbing = Some(Absorbing::new(setup, self.i, shared.width, &shared.z));
-        let Self { e, h, .. } = Self::beyond(setup);
+        let Self { mut e, h, .. } = Self::beyond(setup);
+        for drive in &self.drives {
+            if let Some(initial) = drive.initial {
+                e[drive.axis].at_mut(drive.j, drive.k, 1)[0] = initial;
+            }
+        }
         Self { e, h, absorbing, ..self }
     }
 
@@ -242,14 +292,9 @@ impl<T: Number> Step<'_, T> {
             let Some(span) = self.shared.cones.span(plane.i, j, self.step) else { continue };
             let (k, n) = span;
             self.step_h(plane, j, span);
+            drive_row(&plane.magnets, j, k..k + n, self.step, &mut plane.e, &mut plane.h);
             self.step_e(plane, j, span, scratch);
-            let first = plane.drives.partition_point(|drive| drive.j < j);
-            for drive in plane.drives[first..].iter().take_while(|drive| drive.j == j) {
-                if (k..k + n).contains(&drive.k) {
-                    let e = plane.e[drive.axis].at_mut(j, drive.k, 1);
-                    e[0] = e[0] - drive.series[self.step];
-                }
-            }
+            drive_row(&plane.drives, j, k..k + n, self.step, &mut plane.e, &mut plane.h);
             if let Some(dispersion) = &mut plane.dispersion {
                 dispersion.relax_row(j, k, rows_mut(&mut plane.e, j, span), &scratch.old, &self.shared.poles);
             }

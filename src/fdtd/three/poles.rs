@@ -52,7 +52,7 @@ impl<T: Real> Dispersion<T> {
         for j in 0..ny {
             let first = setup.painted.node([i, j, 0]);
             for axis in 0..3 {
-                let entry = |k: usize| setup.painted.edges[axis].get(first + k) as usize;
+                let entry = |k: usize| setup.entry(axis, first + k);
                 let mut k = 0;
                 while k < nz {
                     let (begin, of) = (k, entry(k));

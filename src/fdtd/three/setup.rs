@@ -5,8 +5,9 @@ use std::borrow::Cow;
 use super::super::FdtdError;
 use super::super::coefficients::{Edge, Slab, check_electric, edge_of};
 use super::super::setup::node_in_grid;
+use super::drive::{Drive, Load, drives, loads};
 use crate::model::{
-    Axis, FaceMaterial, Indices, Model, Order, Painted3, Source, available_memory, check_absorbing_cells, check_grid,
+    Axis, FaceMaterial, Indices, Model, Order, Painted3, available_memory, check_absorbing_cells, check_grid,
     check_mode, check_recording, check_stability_factor,
 };
 use crate::units::constants::{MU_0, Z0};
@@ -23,6 +24,8 @@ pub struct Setup3<'a> {
     /// At x0, y0, z0, xmax, ymax, zmax.
     pub slabs: [Slab; 6],
     pub drives: Vec<Drive>,
+    /// Edges with resistors across them.
+    pub loads: Vec<Load>,
     /// Node of each receiver.
     pub receivers: Vec<[usize; 3]>,
     pub iterations: usize,
@@ -57,14 +60,6 @@ impl Active {
     }
 }
 
-/// A source at a node.
-pub struct Drive {
-    pub axis: usize,
-    pub node: [usize; 3],
-    /// What it takes from the scaled E at each step, V.
-    pub series: Vec<f64>,
-}
-
 impl<'a> Setup3<'a> {
     /// Checks a model and settles its numbers.
     ///
@@ -76,14 +71,19 @@ impl<'a> Setup3<'a> {
         for (material, _) in model.materials.iter().zip(present).filter(|(_, cells)| *cells > 0) {
             check_electric(material)?;
         }
-        let edges: Vec<Edge> = painted.palette.iter().map(|entry| edge_of(model, entry)).collect();
+        let mut edges: Vec<Edge> = painted.palette.iter().map(|entry| edge_of(model, entry)).collect();
+        let loads = loads(model, &painted, &mut edges)?;
         let dt = model.time_step();
         let face = |face: &FaceMaterial| {
             let (storage, loss) = (MU_0 * face.mu_r / dt, face.sigma_magnetic / 2.0);
             [(storage - loss) / (storage + loss), MU_0 / dt / (storage + loss)]
         };
-        let drives = model.sources.iter().enumerate();
-        let drives = drives.map(|(index, source)| drive(model, &painted, &edges, index + 1, source));
+        let faces: Vec<[f64; 2]> = painted.face_palette.iter().map(face).collect();
+        let edge = |axis, place| &edges[entry(&painted, &loads, axis, place)];
+        let db = |axis: usize, place| {
+            if faces.is_empty() { 1.0 } else { faces[painted.faces[axis].get(place) as usize][1] }
+        };
+        let drives = drives(model, &painted, edge, db)?;
         let receivers = model.receivers.iter().enumerate();
         let receivers = receivers.map(|(index, receiver)| {
             node_in_grid(model, receiver.position, || {
@@ -91,9 +91,10 @@ impl<'a> Setup3<'a> {
             })
         });
         Ok(Self {
-            drives: drives.collect::<Result<_, _>>()?,
+            drives,
+            loads,
             receivers: receivers.collect::<Result<_, _>>()?,
-            faces: painted.face_palette.iter().map(face).collect(),
+            faces,
             slabs: slabs(model, &painted),
             painted,
             edges,
@@ -106,7 +107,10 @@ impl<'a> Setup3<'a> {
 
     /// The nodes that sources act on, each with the first step at which it does.
     pub fn begins(&self) -> impl Iterator<Item = ([usize; 3], usize)> {
-        let begin = |drive: &Drive| Some((drive.node, drive.series.iter().position(|&v| v != 0.0)?));
+        let begin = |drive: &Drive| {
+            let at_once = drive.initial.is_some_and(|v| v != 0.0).then_some(0);
+            Some((drive.node, at_once.or_else(|| drive.series.iter().position(|&v| v != 0.0))?))
+        };
         self.drives.iter().filter_map(begin)
     }
 
@@ -121,6 +125,12 @@ impl<'a> Setup3<'a> {
             let none = || std::array::from_fn(|_| Indices::with_capacity(0));
             (painted.solid, painted.edges, painted.faces) = (vec![], none(), none());
         }
+    }
+
+    /// Index into `edges` of the edge along an axis from the node at a place in the list of edges.
+    #[inline]
+    pub fn entry(&self, axis: usize, place: usize) -> usize {
+        entry(&self.painted, &self.loads, axis, place)
     }
 
     /// Whether any edge conducts.
@@ -176,7 +186,14 @@ impl<'a> Setup3<'a> {
     }
 }
 
-fn on_wall(cells: [usize; 3], axis: usize, node: [usize; 3]) -> bool {
+#[inline]
+fn entry(painted: &Painted3, loads: &[Load], axis: usize, place: usize) -> usize {
+    let load = loads.iter().find(|load| load.place == place && load.axis == axis);
+    load.map_or_else(|| painted.edges[axis].get(place) as usize, |load| load.entry)
+}
+
+/// Whether E along an axis lies on the outer wall at a node (or beyond the last edge of its axis).
+pub fn on_wall(cells: [usize; 3], axis: usize, node: [usize; 3]) -> bool {
     (0..3).any(|a| if a == axis { node[a] >= cells[a] } else { node[a] == 0 || node[a] >= cells[a] })
 }
 
@@ -193,50 +210,6 @@ pub fn check_model(model: &Model) -> Result<(), FdtdError> {
     check_recording(model, available_memory())?;
     check_mode(model)?;
     Ok(check_absorbing_cells(model)?)
-}
-
-fn drive(
-    model: &Model,
-    painted: &Painted3,
-    edges: &[Edge],
-    number: usize,
-    source: &Source,
-) -> Result<Drive, FdtdError> {
-    let Source::HertzianDipole(dipole) = source;
-    let node = node_in_grid(model, dipole.position, || format!("source {number}"))?;
-    let axis = dipole.polarisation.index();
-    if let Some(invariant) = model.invariant_axis() {
-        let mode = if model.transverse_electric.is_some() { "TE" } else { "TM" };
-        if !Active::of(model).e[axis] {
-            let invariant = axis_of(invariant);
-            return Err(FdtdError::Across { number, axis: dipole.polarisation, invariant, mode });
-        }
-        if model.transverse_electric.is_some() && node[invariant] != 1 {
-            return Err(FdtdError::BetweenWalls { number, axis: axis_of(invariant), node: node[invariant] });
-        }
-    }
-    if on_wall(painted.cells, axis, node) {
-        return Err(FdtdError::OnWall { number, axis: dipole.polarisation, node });
-    }
-    let edge = &edges[painted.edges[axis].get(painted.node(node)) as usize];
-    if edge.source == 0.0 {
-        return Err(FdtdError::InConductor { number, node });
-    }
-    let waveforms = model.waveforms.len();
-    let waveform = model.waveforms.get(dipole.waveform);
-    let waveform = waveform.ok_or(FdtdError::NoSuchWaveform { number, waveform: dipole.waveform, waveforms })?;
-    let (dt, d) = (model.time_step(), model.grid.spacing);
-    let excitation = dipole.excitation;
-    let series = (0..model.iterations()).map(|n| {
-        let t = n as f64 * dt;
-        if t < excitation.start || excitation.stop.is_some_and(|stop| t > stop) {
-            return 0.0;
-        }
-        // A current of 1 A over one edge: dl/(dx dy dz), and once more dl to make a voltage of E.
-        let moment = d[axis] * d[axis] / (d[0] * d[1] * d[2]);
-        edge.source * waveform.value(t + 0.5 * dt - excitation.start) * moment
-    });
-    Ok(Drive { axis, node, series: series.collect() })
 }
 
 /// The absorbing slabs at x0, y0, z0, xmax, ymax, zmax.

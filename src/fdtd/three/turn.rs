@@ -4,7 +4,7 @@
 //! y has long rows and many planes, one or two rows in each. The axes move in cyclic order, so that no sign changes.
 
 use super::super::FdtdError;
-use crate::model::{Axis, Grid, HertzianDipole, Model, Painted3, Receiver, Source};
+use crate::model::{Axis, Grid, Model, Painted3, Receiver, Source};
 use crate::trace::{Component, Traces};
 use crate::units::Metres;
 
@@ -39,12 +39,10 @@ impl Turn {
     /// The model turned, without its objects, which have been painted.
     pub fn model(self, model: &Model) -> Model {
         let source = |source: &Source| {
-            let Source::HertzianDipole(dipole) = source;
-            Source::HertzianDipole(HertzianDipole {
-                polarisation: self.direction(dipole.polarisation),
-                position: self.triple(dipole.position),
-                ..dipole.clone()
-            })
+            let mut source = source.clone();
+            *source.polarisation_mut() = self.direction(source.polarisation());
+            *source.position_mut() = self.triple(source.position());
+            source
         };
         let receiver =
             |receiver: &Receiver| Receiver { position: self.triple(receiver.position), name: receiver.name.clone() };
@@ -132,6 +130,10 @@ impl Turn {
             FdtdError::OnWall { number, axis: of, node } => {
                 FdtdError::OnWall { number, axis: axis(of), node: triple(node) }
             }
+            FdtdError::MagneticOnWall { number, axis: of, node } => {
+                FdtdError::MagneticOnWall { number, axis: axis(of), node: triple(node) }
+            }
+            FdtdError::SetInDispersive { number, node } => FdtdError::SetInDispersive { number, node: triple(node) },
             FdtdError::InConductor { number, node } => FdtdError::InConductor { number, node: triple(node) },
             FdtdError::Across { number, axis: of, invariant, mode } => {
                 FdtdError::Across { number, axis: axis(of), invariant: axis(invariant), mode }

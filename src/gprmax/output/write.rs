@@ -5,7 +5,7 @@ use std::path::Path;
 use super::super::hdf5::{Attribute, Data, Dataset, Group, to_bytes};
 use super::error::OutputWriteError;
 use crate::files::write_bytes;
-use crate::model::{Axis, Model, Source, TimeWindow};
+use crate::model::{Axis, Model, Source, TimeWindow, VoltageSource};
 use crate::trace::{AScan, Component, ReceiverTraces, Traces};
 
 /// The version of gprMax whose layout is written.
@@ -35,7 +35,15 @@ pub fn traces_to_bytes(traces: &Traces, model: &Model) -> Result<Vec<u8>, Output
     }
     let receivers =
         (0..traces.receivers.len()).map(|index| receiver(traces, model, index)).collect::<Result<_, _>>()?;
-    let sources = (0..model.sources.len()).map(|index| source(traces, model, index)).collect::<Result<_, _>>()?;
+    // In gprMax's order: voltages, currents, magnetic dipoles.
+    let mut order: Vec<usize> = (0..model.sources.len()).collect();
+    order.sort_by_key(|&index| match &model.sources[index] {
+        Source::VoltageSource(_) => 0,
+        Source::HertzianDipole(_) => 1,
+        Source::MagneticDipole(_) => 2,
+    });
+    let sources = order.iter().enumerate().map(|(place, &index)| source(traces, model, place, index));
+    let sources = sources.collect::<Result<_, _>>()?;
     let steps = || Attribute::Ints32(vec![0; 3]);
     let root = Group {
         name: String::new(),
@@ -135,46 +143,66 @@ fn vanishes(model: &Model, component: Component) -> bool {
     model.invariant_axis().is_some_and(|axis| ((axis == along.index()) == component.is_magnetic()) != electric_across)
 }
 
-fn source(traces: &Traces, model: &Model, index: usize) -> Result<Group, OutputWriteError> {
-    let Source::HertzianDipole(dipole) = &model.sources[index];
-    let waveform = model.waveforms.get(dipole.waveform).ok_or(OutputWriteError::Waveform(dipole.waveform))?;
-    let (node, position) = on_grid(model, dipole.position);
+fn source(traces: &Traces, model: &Model, place: usize, index: usize) -> Result<Group, OutputWriteError> {
+    let source = &model.sources[index];
+    let waveform = model.waveforms.get(source.waveform()).ok_or(OutputWriteError::Waveform(source.waveform()))?;
+    let (node, position) = on_grid(model, source.position());
     let time_step = traces.time_step.si();
-    let start = dipole.excitation.start;
+    let start = source.excitation().start;
     let end = match model.time_window {
         TimeWindow::Seconds(seconds) => seconds,
         TimeWindow::Iterations(count) => count.saturating_sub(1) as f64 * time_step,
     };
-    let stop = dipole.excitation.stop.map_or(end, |stop| stop.min(end));
-    // The current acts half a step late: on while start <= n dt <= stop, with the waveform at (n + 1/2) dt.
+    let stop = source.excitation().stop.map_or(end, |stop| stop.min(end));
+    // A current acts half a step late: on while start <= n dt <= stop, with the waveform at (n + 1/2) dt.
+    let (kind, quantity, units, lattice, late) = match source {
+        Source::HertzianDipole(_) => ("HertzianDipole", "electric_current", "A", "electric_half_step", 0.5),
+        Source::MagneticDipole(_) => ("MagneticDipole", "magnetic_dipole_waveform", "", "magnetic_whole_step", 0.0),
+        Source::VoltageSource(VoltageSource { resistance: 0.0, .. }) => {
+            ("VoltageSource", "imposed_gap_voltage", "V", "electric", 0.0)
+        }
+        Source::VoltageSource(_) => ("VoltageSource", "generator_voltage", "V", "electric_half_step", 0.5),
+    };
     let current = |step: usize| {
         let time = step as f64 * time_step;
-        if (start..=stop).contains(&time) { waveform.value(time + 0.5 * time_step - start) } else { 0.0 }
+        let on = (start..=stop).contains(&time);
+        if on { waveform.sample(time + late * time_step - start, time_step) } else { 0.0 }
     };
     let samples: Vec<f64> = (0..traces.iterations).map(current).collect();
-    let polarisation = || text(dipole.polarisation.name());
+    let polarisation = || text(source.polarisation().name());
+    let scale = match source {
+        Source::HertzianDipole(_) => vec![
+            ("SpatialScale", Attribute::Float(model.grid.spacing[source.polarisation().index()])),
+            ("SpatialScaleQuantity", text("dipole_length")),
+            ("SpatialScaleUnits", text("m")),
+        ],
+        Source::MagneticDipole(_) => vec![("SpatialScale", Attribute::Float(1.0))],
+        Source::VoltageSource(VoltageSource { resistance, .. }) => {
+            vec![("SpatialScale", Attribute::Float(1.0)), ("Resistance", Attribute::Float(*resistance))]
+        }
+    };
     let excitation = Group {
         name: "excitation".into(),
         attributes: vec![
             ("SchemaVersion", Attribute::Int(1)),
-            ("SourceType", text("HertzianDipole")),
-            ("DrivingQuantity", text("electric_current")),
-            ("Units", text("A")),
+            ("SourceType", text(kind)),
+            ("DrivingQuantity", text(quantity)),
+            ("Units", text(units)),
             ("Polarisation", polarisation()),
             ("SampleInterval", Attribute::Float(time_step)),
-            ("TimeSampleOffset", Attribute::Float(0.5 * time_step)),
-            ("WaveformEvaluationTimeOffset", Attribute::Float(0.5 * time_step)),
-            ("UpdateLattice", text("electric_half_step")),
-            ("SpatialScale", Attribute::Float(model.grid.spacing[dipole.polarisation.index()])),
-            ("SpatialScaleQuantity", text("dipole_length")),
-            ("SpatialScaleUnits", text("m")),
+            ("TimeSampleOffset", Attribute::Float(late * time_step)),
+            ("WaveformEvaluationTimeOffset", Attribute::Float(late * time_step)),
+            ("UpdateLattice", text(lattice)),
             ("SourceStartTime", Attribute::Float(start)),
             ("SourceStopTime", Attribute::Float(stop)),
             ("WaveformID", text(&waveform.id)),
             ("WaveformType", text(waveform.kind.name())),
             ("WaveformAmplitude", Attribute::Float(waveform.amplitude)),
             ("WaveformFrequency", Attribute::Float(waveform.frequency)),
-        ],
+        ]
+        .into_iter()
+        .chain(scale)
+        .collect(),
         datasets: vec![Dataset {
             name: "samples".into(),
             shape: vec![samples.len()],
@@ -185,10 +213,10 @@ fn source(traces: &Traces, model: &Model, index: usize) -> Result<Group, OutputW
         groups: vec![],
     };
     Ok(Group {
-        name: format!("src{}", index + 1),
+        name: format!("src{}", place + 1),
         attributes: vec![
-            ("Type", text("HertzianDipole")),
-            ("ID", text(&generated("HertzianDipole", &node))),
+            ("Type", text(kind)),
+            ("ID", text(&generated(kind, &node))),
             ("Polarisation", polarisation()),
             ("Position", position),
             ("GridPosition", Attribute::Ints32(node)),

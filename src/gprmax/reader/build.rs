@@ -56,7 +56,7 @@ pub fn read_input(path: &Path) -> Result<Input, InFileError> {
         &["material"],
         &["add_dispersion_debye"],
         &["waveform"],
-        &["hertzian_dipole"],
+        &["hertzian_dipole", "magnetic_dipole", "voltage_source"],
         &["rx", "rx_array"],
         &["box", "cylinder", "sphere", "geometry_objects_read"],
     ];

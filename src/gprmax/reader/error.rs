@@ -233,12 +233,14 @@ pub enum Problem {
         upper: f64,
     },
     /// A source across a two-dimensional model.
-    #[error("a source along {polarisation} in a model of one cell along {axis}: it must point along {axis}")]
+    #[error("a source along {polarisation} in a model of one cell along {axis}: it must point {how} {axis}")]
     Polarisation {
         /// Direction of the source.
         polarisation: &'static str,
         /// Axis of the single cell.
         axis: &'static str,
+        /// `along` for currents and voltages, `across` for magnetic dipoles.
+        how: &'static str,
     },
     /// A two-dimensional mode without its infinite axis.
     #[error(
@@ -259,6 +261,14 @@ pub enum Problem {
     AcrossTransverseElectric {
         /// Direction of the source.
         polarisation: &'static str,
+    },
+    /// A magnetic dipole across the axis that a TE model's H lies along.
+    #[error("a magnetic dipole along {polarisation} in a TE model across {axis}: it must point along {axis}")]
+    MagneticTransverseElectric {
+        /// Direction of the source.
+        polarisation: &'static str,
+        /// The axis along which nothing changes.
+        axis: &'static str,
     },
     /// A source off the one layer of nodes that holds the fields of a TE model.
     #[error(

@@ -12,6 +12,7 @@ mod error;
 mod lines;
 mod multiple;
 mod single;
+mod sources;
 mod values;
 
 pub(super) use directives::DIRECTIVE;

@@ -1,4 +1,4 @@
-//! The commands that may stand any number of times: materials, waveforms, sources, receivers, objects.
+//! The commands that may stand any number of times: materials, receivers, objects; for waveforms and sources see `sources`.
 
 use std::path::Path;
 
@@ -6,12 +6,10 @@ use super::super::geometry::{GeometryError, read_voxels};
 use super::build::Note;
 use super::error::Problem;
 use super::lines::Command;
+use super::sources;
 use super::values::Parameters;
 use crate::files::nearest_name;
-use crate::model::{
-    Axis, DebyePole, Excitation, HertzianDipole, Material, MaterialId, Model, Object, Receiver, Source, Waveform,
-    WaveformKind,
-};
+use crate::model::{Axis, DebyePole, Material, MaterialId, Model, Object, Receiver};
 
 /// Reads one of the commands that may stand any number of times.
 pub(super) fn apply(
@@ -23,8 +21,8 @@ pub(super) fn apply(
     match command.name {
         "material" => material(model, command),
         "add_dispersion_debye" => debye(model, command),
-        "waveform" => waveform(model, command),
-        "hertzian_dipole" => hertzian_dipole(model, command),
+        "waveform" => sources::waveform(model, command),
+        "hertzian_dipole" | "magnetic_dipole" | "voltage_source" => sources::source(model, command),
         "rx" => receiver(model, command, notes),
         "rx_array" => receiver_array(model, command),
         "box" => cuboid(model, command),
@@ -91,56 +89,6 @@ fn debye(model: &mut Model, command: &Command<'_>) -> Result<(), Problem> {
         material.poles.clone_from(&poles);
         material.averagable = false;
     }
-    Ok(())
-}
-
-fn waveform(model: &mut Model, command: &Command<'_>) -> Result<(), Problem> {
-    let p = Parameters::of(command, "TYPE AMPLITUDE FREQUENCY ID", |n| n == 4)?;
-    let (word, id) = (p.word(0)?.to_lowercase(), p.word(3)?);
-    let Some(kind) = WaveformKind::ALL.into_iter().find(|kind| kind.name() == word) else {
-        let known = WaveformKind::ALL.map(WaveformKind::name).join(", ");
-        return Err(p.not_one_of(&word, "a waveform that the embedded solver knows", known));
-    };
-    let (amplitude, frequency) = (p.number(1, "an amplitude")?, p.number(2, "a frequency in Hz")?);
-    p.check("the frequency", frequency, frequency > 0.0, "above 0")?;
-    if model.waveforms.iter().any(|known| known.id == id) {
-        return Err(Problem::DefinedTwice { what: "waveform", id: id.into() });
-    }
-    model.waveforms.push(Waveform { id: id.into(), kind, amplitude, frequency });
-    Ok(())
-}
-
-fn hertzian_dipole(model: &mut Model, command: &Command<'_>) -> Result<(), Problem> {
-    let p = Parameters::of(command, "x|y|z X Y Z WAVEFORM [START STOP]", |n| n == 5 || n == 7)?;
-    let word = p.word(0)?;
-    let axis = [Axis::X, Axis::Y, Axis::Z].into_iter().find(|axis| axis.name() == word.to_lowercase());
-    let polarisation = axis.ok_or_else(|| p.not_one_of(word, "a polarisation", "x, y, z".into()))?;
-    let invariant = [Axis::X, Axis::Y, Axis::Z].into_iter().find(|a| model.grid.invariant_axis() == Some(a.index()));
-    if let Some(axis) = invariant.filter(|axis| *axis != polarisation) {
-        return Err(Problem::Polarisation { polarisation: polarisation.name(), axis: axis.name() });
-    }
-    let position = p.point(1)?;
-    inside(model, "source", position)?;
-    if let Some(axis) = model.transverse_electric {
-        if axis == polarisation {
-            return Err(Problem::AcrossTransverseElectric { polarisation: polarisation.name() });
-        }
-        between_walls(model, axis, position)?;
-    }
-    let id = p.word(4)?;
-    let waveform = model.waveforms.iter().position(|known| known.id == id).ok_or_else(|| Problem::Undefined {
-        what: "waveform",
-        id: id.into(),
-        nearest: nearest_name(id, model.waveforms.iter().map(|known| known.id.as_str())).map(Into::into),
-    })?;
-    let mut excitation = Excitation { start: 0.0, stop: None };
-    if p.len() == 7 {
-        let (start, stop) = (p.number(5, "a time in seconds")?, p.number(6, "a time in seconds")?);
-        p.check("the start", start, start >= 0.0, "0 or later")?;
-        p.check("the stop", stop, stop > start, "later than the start")?;
-        excitation = Excitation { start, stop: Some(stop) };
-    }
-    model.sources.push(Source::HertzianDipole(HertzianDipole { polarisation, position, waveform, excitation }));
     Ok(())
 }
 
@@ -278,7 +226,7 @@ fn material_id(model: &Model, p: &Parameters<'_>, id: &str) -> Result<MaterialId
 }
 
 /// Sources of a TE model must lie on the layer of nodes that holds its fields.
-fn between_walls(model: &Model, axis: Axis, position: [f64; 3]) -> Result<(), Problem> {
+pub(super) fn between_walls(model: &Model, axis: Axis, position: [f64; 3]) -> Result<(), Problem> {
     match model.grid.node(axis.index(), position[axis.index()]) {
         1 => Ok(()),
         node => Err(Problem::BetweenWalls { axis: axis.name(), node, spacing: model.grid.spacing[axis.index()] }),
@@ -286,7 +234,7 @@ fn between_walls(model: &Model, axis: Axis, position: [f64; 3]) -> Result<(), Pr
 }
 
 /// Sources, receivers and corners of boxes must lie on a node of the grid.
-fn inside(model: &Model, what: &'static str, position: [f64; 3]) -> Result<(), Problem> {
+pub(super) fn inside(model: &Model, what: &'static str, position: [f64; 3]) -> Result<(), Problem> {
     let grid = &model.grid;
     let within = |axis: usize| (0..=grid.cells[axis] as i64).contains(&grid.node(axis, position[axis]));
     if (0..3).all(within) {

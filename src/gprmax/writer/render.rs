@@ -11,7 +11,7 @@ use super::error::WriteError;
 use super::number::{exponent, number};
 use super::voxel_files::VoxelFiles;
 use crate::files::write_bytes;
-use crate::model::{Material, MaterialId, Model, Object, Order, Source, TimeWindow};
+use crate::model::{Material, MaterialId, Model, Object, Order, Source, TimeWindow, VoltageSource};
 
 /// The template that is built in.
 pub const DEFAULT_TEMPLATE: &str = include_str!("../../../templates/model.in");
@@ -21,7 +21,8 @@ pub const DEFAULT_TEMPLATE: &str = include_str!("../../../templates/model.in");
 /// A template is one of minijinja (Jinja2). It sees texts `generator`, `title`, `domain_mode`, `time_window`, `time_step`,
 /// `stability_factor`, `threads`; lists `domain`, `spacing`, `cells`, `pml_cells`; the number `iterations`; `materials` (each
 /// `id`, `eps_r`, `sigma`, `mu_r`, `sigma_magnetic`, `poles` with `delta_eps`, `tau`), `waveforms` (`kind`, `amplitude`,
-/// `frequency`, `id`), `sources` (`polarisation`, `position`, `waveform`, `start`, `stop`), `receivers` (`position`, `name`),
+/// `frequency`, `id`), `sources` (`command`, `polarisation`, `position`, `resistance`,
+/// `waveform`, `start`, `stop`), `receivers` (`position`, `name`),
 /// lists `source_steps`, `receiver_steps`, and `objects`, the finished lines. What is not given is an empty text or list; a name that does not exist is an error.
 #[derive(Debug, Clone, Default)]
 pub struct InputOptions {
@@ -83,6 +84,9 @@ struct WaveformLine {
 
 #[derive(Debug, Serialize)]
 struct SourceLine {
+    command: &'static str,
+    /// Empty but for voltage sources.
+    resistance: String,
     polarisation: &'static str,
     position: [String; 3],
     waveform: String,
@@ -213,24 +217,28 @@ fn materials(model: &Model, voxels: &VoxelFiles<'_>) -> Vec<MaterialLine> {
 
 fn sources(model: &Model) -> Result<Vec<SourceLine>, WriteError> {
     let line = |source: &Source| {
-        let Source::HertzianDipole(dipole) = source;
-        let waveform = model
-            .waveforms
-            .get(dipole.waveform)
-            .ok_or(WriteError::Dangling { what: "waveform", index: dipole.waveform })?;
+        let (index, excitation) = (source.waveform(), source.excitation());
+        let waveform = model.waveforms.get(index).ok_or(WriteError::Dangling { what: "waveform", index })?;
+        let (command, resistance) = match source {
+            Source::HertzianDipole(_) => ("hertzian_dipole", String::new()),
+            Source::MagneticDipole(_) => ("magnetic_dipole", String::new()),
+            Source::VoltageSource(VoltageSource { resistance, .. }) => ("voltage_source", number(*resistance)),
+        };
         // gprMax knows a start only together with a stop; a stop at the end of the window changes nothing.
         let end = match model.time_window {
             TimeWindow::Seconds(seconds) => seconds,
             TimeWindow::Iterations(count) => count as f64 * model.time_step(),
         };
-        let timed = dipole.excitation.start != 0.0 || dipole.excitation.stop.is_some();
+        let timed = excitation.start != 0.0 || excitation.stop.is_some();
         let text = |value: f64| if timed { number(value) } else { String::new() };
         Ok(SourceLine {
-            polarisation: dipole.polarisation.name(),
-            position: dipole.position.map(number),
+            command,
+            resistance,
+            polarisation: source.polarisation().name(),
+            position: source.position().map(number),
             waveform: waveform.id.clone(),
-            start: text(dipole.excitation.start),
-            stop: text(dipole.excitation.stop.unwrap_or(end)),
+            start: text(excitation.start),
+            stop: text(excitation.stop.unwrap_or(end)),
         })
     };
     model.sources.iter().map(line).collect()

@@ -76,7 +76,7 @@ pub fn across_y(model: &Model) -> Model {
         }
     }
     for source in &mut turned.sources {
-        let Source::HertzianDipole(dipole) = source;
+        let Source::HertzianDipole(dipole) = source else { panic!("{source:?} has not been taught to turn") };
         dipole.position = turn(dipole.position);
         dipole.polarisation = match dipole.polarisation {
             Axis::X => Axis::X,
