@@ -116,7 +116,7 @@ pub struct Shared<T> {
 
 impl<T: Number> State for Plane<T> {
     fn visit(&mut self, visitor: &mut dyn FnMut(Numbers<'_>)) {
-        let Self { i: _, e, h, grades: _, magnetic: _, absorbing, drives: _, dispersion, probes } = self;
+        let Self { i: _, e, h, grades: _, magnetic: _, absorbing, magnets: _, drives: _, dispersion, probes } = self;
         e.visit(visitor);
         h.visit(visitor);
         absorbing.visit(visitor);
