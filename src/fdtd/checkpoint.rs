@@ -34,7 +34,7 @@ pub struct Checkpoints<'a> {
     pub path: PathBuf,
     /// Wall time from one to the next.
     pub every: Duration,
-    /// A run that is asked to stop writes a last one if it has been stepping for this long.
+    /// A run that is asked to stop writes a last one if it has been stepping for this long, or has gone on from one.
     pub stop_after: Duration,
     /// Goes on from the file if it is there; otherwise it is left alone until it is written over.
     pub go_on: bool,
@@ -128,7 +128,8 @@ pub struct Keeper<'a> {
     precision: Precision,
     /// Once it is known.
     fingerprint: Option<String>,
-    begun: Instant,
+    /// From when on a request to stop makes a last one.
+    stop_from: Instant,
     last: Instant,
 }
 
@@ -136,7 +137,8 @@ impl<'a> Keeper<'a> {
     /// Starts the clock.
     pub fn new(settings: &'a Checkpoints<'a>, model: &'a Model, precision: Precision) -> Self {
         let now = Instant::now();
-        Self { settings, model, precision, fingerprint: None, begun: now, last: now }
+        let stop_from = now + settings.stop_after.min(LONGEST_WAIT);
+        Self { settings, model, precision, fingerprint: None, stop_from, last: now }
     }
 
     /// When the next one is due.
@@ -146,7 +148,7 @@ impl<'a> Keeper<'a> {
 
     /// From when on a request to stop makes a last one.
     pub fn stop_from(&self) -> Instant {
-        self.begun + self.settings.stop_after.min(LONGEST_WAIT)
+        self.stop_from
     }
 
     fn header(&mut self, step: usize, bytes: u64) -> Header {
@@ -227,6 +229,8 @@ impl<'a> Keeper<'a> {
             return Err(damaged("its checksum is wrong"));
         }
         let iterations = found.iterations;
+        // The steps of the process before are worth another one.
+        self.stop_from = Instant::now();
         (self.settings.tell)(CheckpointEvent::Resumed { step: found.step, iterations });
         Ok(found.step)
     }
