@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::cli::error::CliError;
 use crate::files;
+use crate::gprmax;
 
 /// Name of the resolved scene.
 pub const SCENE: &str = "scene.toml";
@@ -93,6 +94,8 @@ pub fn model_fingerprint(input: &Path) -> Result<String, CliError> {
     let mut paths = vec![input.to_path_buf()];
     if input.file_name().is_some_and(|name| name == MODEL) {
         paths.extend(MODEL_FILES[1..].iter().map(|name| folder.join(name)).filter(|path| path.exists()));
+    } else if let Ok(files) = gprmax::input_files(input) {
+        paths.extend(files.into_iter().skip(1).filter(|path| path.exists()));
     }
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     for path in &paths {

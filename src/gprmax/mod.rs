@@ -18,5 +18,7 @@ pub use geometry::GeometryError;
 pub use install::{InstallError, Interpreter, VersionInfo};
 pub use output::{OutputError, OutputWriteError, read_traces, traces_to_bytes, write_traces};
 pub use program::{GprMax, GprMaxRun, RunError};
-pub use reader::{COMMANDS, CommandKind, InFileError, Input, Note, Problem, read_input, read_model, read_order};
+pub use reader::{
+    COMMANDS, CommandKind, InFileError, Input, Note, Problem, input_files, read_input, read_model, read_order,
+};
 pub use writer::{DEFAULT_TEMPLATE, InputOptions, WriteError, number, write_input};

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use ballast_gpr::gprmax::{InputOptions, Note, read_input, read_model, write_input};
+use ballast_gpr::gprmax::{InputOptions, Note, input_files, read_input, read_model, write_input};
 use ballast_gpr::model::{
     Axis, DebyePole, Excitation, Grid, HertzianDipole, MagneticDipole, Material, MaterialId, Model, Object, Receiver,
     Source, TimeWindow, VoltageSource, Voxels, Waveform, WaveformKind,
@@ -230,6 +230,22 @@ fn meaning(model: &Model) -> Meaning {
         ),
         objects: objects.collect(),
     }
+}
+
+/// Pulses given as samples go into files beside the input file, and come back with the same bits.
+#[test]
+fn pulses_of_the_user_are_written_and_read_back() {
+    let case = reference_case("excitation_file");
+    let model = read_model(&case.join("scene.in")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let paths = write_input(&model, folder.path(), "model", &InputOptions::default()).unwrap();
+    assert_eq!(paths.len(), 1 + 5);
+    let again = read_model(&paths[0]).unwrap();
+    assert_eq!(again, model);
+    assert_eq!(input_files(&paths[0]).unwrap().len(), 1 + 5);
+    let WaveformKind::User(chirp) = &model.waveforms[0].kind else { panic!("samples") };
+    // One sample for each of 500 steps: 150 of the file, then zeros.
+    assert_eq!((chirp.times().len(), chirp.times()[499], chirp.values()[150]), (500, 499.0 * model.time_step(), 0.0));
 }
 
 /// The reference cases say the same after reading, writing and reading again.

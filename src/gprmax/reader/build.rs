@@ -1,10 +1,11 @@
 //! From commands to a model.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::commands::CommandKind;
 use super::directives;
 use super::error::InFileError;
+use super::include::Whole;
 use super::lines::split;
 use super::multiple::apply;
 use super::single::start;
@@ -37,15 +38,33 @@ impl std::fmt::Display for Note {
 
 /// Reads an input file.
 ///
-/// Geometry files are looked for beside the input file.
+/// Geometry and excitation files are looked for beside the input file, included files beside the file that includes them.
 ///
 /// # Errors
 /// See [`InFileError`]: every error names the file and the line.
 pub fn read_input(path: &Path) -> Result<Input, InFileError> {
-    let text = read_text(path)?;
+    let whole = Whole::read(path)?;
+    let mut input = read_whole(path, &whole.text).map_err(|error| whole.error(error))?;
+    for note in &mut input.notes {
+        let (line, place) = whole.note(note.line);
+        *note = Note { line, text: format!("{place}{}", note.text) };
+    }
+    Ok(input)
+}
+
+/// Gives the files that decide what an input file means: itself, those it includes, those that its commands read.
+///
+/// # Errors
+/// As [`read_input`], for the files that are included.
+pub fn input_files(path: &Path) -> Result<Vec<PathBuf>, InFileError> {
+    Ok(Whole::read(path)?.files())
+}
+
+/// Reads the text of an input file, in which everything that it includes stands already.
+fn read_whole(path: &Path, text: &str) -> Result<Input, InFileError> {
     let at = |line: usize| move |problem| InFileError::Line { path: path.into(), line, problem: Box::new(problem) };
-    let (commands, indented) = split(&text).map_err(|(line, problem)| at(line)(problem))?;
-    let order = directives::order(&text).map_err(|(line, problem)| at(line)(problem))?;
+    let (commands, indented) = split(text).map_err(|(line, problem)| at(line)(problem))?;
+    let order = directives::order(text).map_err(|(line, problem)| at(line)(problem))?;
     let mut model = start(path, &commands, order)?;
     let mut notes: Vec<Note> = indented
         .into_iter()
@@ -55,7 +74,7 @@ pub fn read_input(path: &Path) -> Result<Input, InFileError> {
     let passes: [&[&str]; 6] = [
         &["material"],
         &["add_dispersion_debye"],
-        &["waveform"],
+        &["waveform", "excitation_file"],
         &["hertzian_dipole", "magnetic_dipole", "voltage_source"],
         &["rx", "rx_array"],
         &["box", "cylinder", "sphere", "geometry_objects_read"],

@@ -283,6 +283,31 @@ pub enum Problem {
         /// Cell size along the axis, m.
         spacing: f64,
     },
+    /// A file that includes itself, directly or through others.
+    #[error("`{file}` includes itself")]
+    IncludesItself {
+        /// The file as it is written there.
+        file: String,
+    },
+    /// More included files, or more text in them, than can be meant.
+    #[error("{files} files are included, or more than 1 GiB of text: that is taken for a mistake")]
+    TooMuchIncluded {
+        /// Files so far.
+        files: usize,
+    },
+    /// A file that a command names cannot be read.
+    #[error("failed to {0}")]
+    File(#[from] FileError),
+    /// A file of pulses is wrong.
+    #[error("`{}` line {line}: {what}", file.display())]
+    Excitation {
+        /// The file.
+        file: PathBuf,
+        /// Line number, from 1.
+        line: usize,
+        /// What is wrong.
+        what: String,
+    },
     /// The file of a `#geometry_objects_read` is wrong.
     #[error(transparent)]
     Geometry(#[from] GeometryError),

@@ -9,6 +9,8 @@ mod build;
 mod commands;
 mod directives;
 mod error;
+mod excitation;
+mod include;
 mod lines;
 mod multiple;
 mod single;
@@ -17,6 +19,6 @@ mod values;
 
 pub(super) use directives::DIRECTIVE;
 
-pub use build::{Input, Note, read_input, read_model, read_order};
+pub use build::{Input, Note, input_files, read_input, read_model, read_order};
 pub use commands::{COMMANDS, CommandKind};
 pub use error::{InFileError, Problem};

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::super::geometry::{GeometryError, read_voxels};
 use super::build::Note;
 use super::error::Problem;
+use super::excitation::excitation_file;
 use super::lines::Command;
 use super::sources;
 use super::values::Parameters;
@@ -22,6 +23,7 @@ pub(super) fn apply(
         "material" => material(model, command),
         "add_dispersion_debye" => debye(model, command),
         "waveform" => sources::waveform(model, command),
+        "excitation_file" => excitation_file(model, path, command),
         "hertzian_dipole" | "magnetic_dipole" | "voltage_source" => sources::source(model, command),
         "rx" => receiver(model, command, notes),
         "rx_array" => receiver_array(model, command),

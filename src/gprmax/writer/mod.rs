@@ -5,6 +5,7 @@
 
 mod error;
 mod number;
+mod pulse_files;
 mod render;
 mod voxel_files;
 

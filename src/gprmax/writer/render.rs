@@ -9,9 +9,10 @@ use serde::Serialize;
 use super::super::reader::DIRECTIVE;
 use super::error::WriteError;
 use super::number::{exponent, number};
-use super::voxel_files::VoxelFiles;
+use super::pulse_files::{PulseFiles, sampled};
+use super::voxel_files::{VoxelFiles, command_safe};
 use crate::files::write_bytes;
-use crate::model::{Material, MaterialId, Model, Object, Order, Source, TimeWindow, VoltageSource};
+use crate::model::{Beyond, Material, MaterialId, Model, Object, Order, Source, TimeWindow, VoltageSource};
 
 /// The template that is built in.
 pub const DEFAULT_TEMPLATE: &str = include_str!("../../../templates/model.in");
@@ -21,7 +22,7 @@ pub const DEFAULT_TEMPLATE: &str = include_str!("../../../templates/model.in");
 /// A template is one of minijinja (Jinja2). It sees texts `generator`, `title`, `domain_mode`, `time_window`, `time_step`,
 /// `stability_factor`, `threads`; lists `domain`, `spacing`, `cells`, `pml_cells`; the number `iterations`; `materials` (each
 /// `id`, `eps_r`, `sigma`, `mu_r`, `sigma_magnetic`, `poles` with `delta_eps`, `tau`), `waveforms` (`kind`, `amplitude`,
-/// `frequency`, `id`), `sources` (`command`, `polarisation`, `position`, `resistance`,
+/// `frequency`, `id`; `file`, `between`, `beyond` of pulses given as samples), `sources` (`command`, `polarisation`, `position`, `resistance`,
 /// `waveform`, `start`, `stop`), `receivers` (`position`, `name`),
 /// lists `source_steps`, `receiver_steps`, and `objects`, the finished lines. What is not given is an empty text or list; a name that does not exist is an error.
 #[derive(Debug, Clone, Default)]
@@ -76,6 +77,10 @@ struct PoleLine {
 
 #[derive(Debug, Serialize)]
 struct WaveformLine {
+    /// File of a pulse given as samples, and how they are interpolated; else empty.
+    file: String,
+    between: &'static str,
+    beyond: String,
     kind: &'static str,
     amplitude: String,
     frequency: String,
@@ -116,10 +121,12 @@ pub fn write_input(
 ) -> Result<Vec<PathBuf>, WriteError> {
     check(model)?;
     let voxels = VoxelFiles::of(model, stem)?;
-    let text = fill_in(&page(model, &voxels)?, options)?;
+    let pulses = PulseFiles { model, stem: command_safe(stem) };
+    let text = fill_in(&page(model, &voxels, &pulses)?, options)?;
     let path = folder.join(format!("{stem}.in"));
     let mut written = vec![path.clone()];
     written.extend(voxels.write(folder)?);
+    written.extend(pulses.write(folder)?);
     write_bytes(&path, text.as_bytes())?;
     Ok(written)
 }
@@ -146,7 +153,7 @@ fn fill_in(page: &Page, options: &InputOptions) -> Result<String, WriteError> {
     Ok(text + "\n")
 }
 
-fn page(model: &Model, voxels: &VoxelFiles<'_>) -> Result<Page, WriteError> {
+fn page(model: &Model, voxels: &VoxelFiles<'_>, pulses: &PulseFiles<'_>) -> Result<Page, WriteError> {
     let grid = &model.grid;
     let mut objects = vec![];
     for (index, object) in model.objects.iter().enumerate() {
@@ -179,7 +186,14 @@ fn page(model: &Model, voxels: &VoxelFiles<'_>) -> Result<Page, WriteError> {
         waveforms: model
             .waveforms
             .iter()
-            .map(|w| WaveformLine {
+            .enumerate()
+            .map(|(index, w)| WaveformLine {
+                file: pulses.name(index),
+                between: sampled(w).map_or("", |sampled| sampled.between().name()),
+                beyond: sampled(w).map_or(String::new(), |sampled| match sampled.beyond() {
+                    Beyond::Value(value) => number(value),
+                    Beyond::Extrapolate => "extrapolate".into(),
+                }),
                 kind: w.kind.name(),
                 amplitude: number(w.amplitude),
                 frequency: number(w.frequency),

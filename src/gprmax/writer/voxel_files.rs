@@ -113,7 +113,7 @@ fn key(id: MaterialId) -> String {
 }
 
 /// A name that a command can hold and that gprMax takes as the name of a database: a letter, then letters, digits, `_`, `-`.
-fn command_safe(stem: &str) -> String {
+pub(super) fn command_safe(stem: &str) -> String {
     let safe: String = stem.chars().map(|c| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' }).collect();
     if safe.starts_with(|c: char| c.is_ascii_alphabetic()) { safe } else { format!("m{safe}") }
 }
