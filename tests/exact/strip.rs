@@ -162,8 +162,8 @@ fn a_relaxing_slab_reflects_by_fresnel() {
 /// Attenuation and phase per metre in soils and conductors, between 20 and 60 mm of depth (or two and six skin depths where
 /// that is less): against the exact wave number with the tolerance `|k|(|k d|² + 2 (w dt)²)/24`
 /// beside that of the tail below, and against that of the grid,
-/// `4/d² sin²(kx d/2) + ky² = mu0 (2/dt) sin(w dt/2) (eps (2/dt) sin(w dt/2) - i sigma cos(w dt/2))`, to 1e-4 (what
-/// the slow tail of the field in a conductor leaves beyond the window).
+/// `4/d² sin²(kx d/2) + ky² = mu0 (2/dt) sin(w dt/2) (eps (2/dt) sin(w dt/2) - i sigma cos(w dt/2))`, to 1e-4 (a bound set
+/// after 1.2e-5 was found: the slow tail of the field in a conductor goes on beyond the window).
 #[test]
 fn waves_in_conductors_decay_with_the_skin_depth() {
     let cell = 0.002;
