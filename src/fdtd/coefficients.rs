@@ -1,11 +1,10 @@
 //! From materials to the numbers of the kernels, in double precision.
 
-use super::FdtdError;
-use crate::model::{DebyePole, EdgeMaterial, Material, Model, Painted};
-use crate::units::constants::{EPSILON_0, MU_0, Z0};
+use std::f64::consts::PI;
 
-/// The most Debye poles a material may have.
-pub const MOST_POLES: usize = 3;
+use super::FdtdError;
+use crate::model::{DebyePole, EdgeMaterial, MOST_POLES_IN_A_PLANE, Material, Model, Painted, Resonance};
+use crate::units::constants::{EPSILON_0, MU_0, Z0};
 
 /// What lies on an edge, as the kernels want it.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,9 +17,16 @@ pub struct Edge {
     pub source: f64,
     /// One entry per pole: `give`, `keep`, `take` of [`Relaxation`](super::kernel::Relaxation).
     pub poles: Vec<[f64; 3]>,
+    /// One entry per Lorentz pole: `keep` and `take` of `Ringing`, real and imaginary parts.
+    pub ringing: Vec<[f64; 4]>,
 }
 
 impl Edge {
+    /// Numbers of polarisation memory: one for a pole, two for one that rings.
+    pub fn memories(&self) -> usize {
+        self.poles.len() + 2 * self.ringing.len()
+    }
+
     /// Whether E decays by conduction.
     pub fn is_lossy(&self) -> bool {
         self.ca != 1.0
@@ -30,29 +36,75 @@ impl Edge {
 /// The coefficients of every entry of the palette.
 ///
 /// # Errors
-/// Materials on the grid that the solver does not know: magnetic ones, and those with more than three Debye poles.
+/// Materials on the grid that the plane does not know: magnetic ones, those that ring, and those with more than three poles.
 pub fn edges(model: &Model, painted: &Painted) -> Result<Vec<Edge>, FdtdError> {
     let present = painted.cells_per_material(model.materials.len());
     for (material, _) in model.materials.iter().zip(present).filter(|(_, cells)| *cells > 0) {
         check_material(material)?;
     }
-    Ok(painted.palette.iter().map(|entry| edge_of(model, entry)).collect())
+    let of_entry = |entry: &EdgeMaterial| {
+        let edge = edge_of(model, entry);
+        if edge.poles.len() <= MOST_POLES_IN_A_PLANE && edge.ringing.is_empty() {
+            return Ok(edge);
+        }
+        // Several materials, averaged: the route of three dimensions knows them.
+        let first = entry.shares().first().map(|(id, _)| model.materials[id.index()].id.clone());
+        let (material, most) = (first.unwrap_or_default(), MOST_POLES_IN_A_PLANE);
+        Err(FdtdError::TooManyPoles { material, poles: edge.poles.len(), most })
+    };
+    painted.palette.iter().map(of_entry).collect()
 }
 
 /// The coefficients of one entry of a palette.
 pub fn edge_of(model: &Model, entry: &EdgeMaterial) -> Edge {
     if entry.sigma.is_infinite() {
-        return Edge { ca: 1.0, cb: 0.0, source: 0.0, poles: vec![] };
+        return Edge { ca: 1.0, cb: 0.0, source: 0.0, poles: vec![], ringing: vec![] };
     }
-    let poles = entry.dispersive.map_or(&[][..], |id| &model.materials[id.index()].poles);
-    edge(entry.eps_r, entry.sigma, poles, model.time_step(), model.grid.spacing[0])
+    let (mut poles, mut resonances) = (vec![], vec![]);
+    for (id, share) in entry.shares() {
+        let material = &model.materials[id.index()];
+        poles.extend(material.poles.iter().map(|p| DebyePole { delta_eps: share * p.delta_eps, tau: p.tau }));
+        resonances.extend(material.resonances.iter().map(|resonance| (*resonance, share)));
+    }
+    edge(entry.eps_r, entry.sigma, &poles, &resonances, model.time_step(), model.grid.spacing[0])
 }
 
 /// `EA = eps0 eps_r/dt + sigma/2 + (eps0/dt) sum delta_eps (1 - exp(-dt/(2 tau)))`; the sum stands in `EB` too, so a
 /// pole far faster than `dt` adds its whole strength to the permittivity. A pole of no strength is dropped.
-fn edge(eps_r: f64, sigma: f64, poles: &[DebyePole], dt: f64, dx: f64) -> Edge {
-    let poles = || poles.iter().filter(|pole| pole.delta_eps != 0.0);
+///
+/// A pole of the scheme of Giannakis & Giannopoulos 2014 is `w exp(q t)`. Debye: `w = delta_eps/tau`, `q = -1/tau`. Drude:
+/// `w = -wp²/g`, `q = -g` with a conductivity of `eps0 wp²/g`, so it is a relaxation of strength `-(wp/g)²`. Lorentz:
+/// `w = -i delta_eps w0²/b`, `q = -delta + i b`, `b = sqrt(w0² - delta²)`, and its real part acts.
+fn edge(eps_r: f64, sigma: f64, poles: &[DebyePole], resonances: &[(Resonance, f64)], dt: f64, dx: f64) -> Edge {
+    let mut poles: Vec<DebyePole> = poles.iter().filter(|pole| pole.delta_eps != 0.0).copied().collect();
+    let (mut sigma, mut lorentz) = (sigma, vec![]);
+    for &(resonance, share) in resonances {
+        match resonance {
+            Resonance::Drude { frequency, collisions } => {
+                let strength = share * (2.0 * PI * frequency / collisions).powi(2);
+                if strength != 0.0 {
+                    sigma += EPSILON_0 * strength * collisions;
+                    poles.push(DebyePole { delta_eps: -strength, tau: 1.0 / collisions });
+                }
+            }
+            Resonance::Lorentz { delta_eps, frequency, damping } if share * delta_eps != 0.0 => {
+                let resonant = 2.0 * PI * frequency;
+                let ringing = ((resonant - damping) * (resonant + damping)).sqrt();
+                let (w, q) = ((0.0, -share * delta_eps * resonant * resonant / ringing), (-damping, ringing));
+                let norm = q.0 * q.0 + q.1 * q.1;
+                let over = ((w.0 * q.0 + w.1 * q.1) / norm, (w.1 * q.0 - w.0 * q.1) / norm);
+                lorentz.push((over, q));
+            }
+            Resonance::Lorentz { .. } => {}
+        }
+    }
+    let poles = || poles.iter();
+    let ringing = |&((a, b), (decay, turn)): &((f64, f64), (f64, f64))| {
+        let (re, im) = complex_exp_m1(0.5 * dt * decay, 0.5 * dt * turn);
+        a * re - b * im
+    };
     let relaxed: f64 = poles().map(|pole| -pole.delta_eps * (-dt / (2.0 * pole.tau)).exp_m1()).sum();
+    let relaxed = lorentz.iter().map(ringing).fold(relaxed, |sum, part| sum + part);
     let storage = EPSILON_0 * (eps_r + relaxed) / dt;
     let (ea, eb) = (storage + sigma / 2.0, storage - sigma / 2.0);
     let source = 1.0 / ea;
@@ -60,7 +112,33 @@ fn edge(eps_r: f64, sigma: f64, poles: &[DebyePole], dt: f64, dx: f64) -> Edge {
         let step = -dt / pole.tau;
         [source * EPSILON_0 / dt * (step / 2.0).exp(), step.exp(), pole.delta_eps * step.exp_m1()]
     };
-    Edge { ca: eb / ea, cb: source * dt / (MU_0 * dx * dx), source, poles: poles().map(triple).collect() }
+    let quadruple = |&((a, b), (decay, turn)): &((f64, f64), (f64, f64))| {
+        let (re, im) = complex_exp_m1(dt * decay, dt * turn);
+        // - (w/q) expm1(q dt), once more turned by exp(q dt/2) and scaled as what a unit takes from E.
+        let (re, im) = (-(a * re - b * im), -(a * im + b * re));
+        let (half, scale) = ((0.5 * dt * decay).exp(), source * EPSILON_0 / dt);
+        let (cos, sin) = (half * (0.5 * dt * turn).cos(), half * (0.5 * dt * turn).sin());
+        let keep = (dt * decay).exp();
+        [
+            keep * (dt * turn).cos(),
+            keep * (dt * turn).sin(),
+            scale * (re * cos - im * sin),
+            scale * (re * sin + im * cos),
+        ]
+    };
+    Edge {
+        ca: eb / ea,
+        cb: source * dt / (MU_0 * dx * dx),
+        source,
+        poles: poles().map(triple).collect(),
+        ringing: lorentz.iter().map(quadruple).collect(),
+    }
+}
+
+/// `exp(a + i b) - 1` without cancellation near zero.
+fn complex_exp_m1(a: f64, b: f64) -> (f64, f64) {
+    let half = (0.5 * b).sin();
+    (a.exp_m1() * b.cos() - 2.0 * half * half, a.exp() * b.sin())
 }
 
 fn check_material(material: &Material) -> Result<(), FdtdError> {
@@ -69,7 +147,12 @@ fn check_material(material: &Material) -> Result<(), FdtdError> {
         let (mu_r, sigma_magnetic) = (material.mu_r, material.sigma_magnetic);
         return Err(FdtdError::Magnetic { material: id(), mu_r, sigma_magnetic });
     }
-    check_electric(material)
+    check_electric(material)?;
+    match material.pole_counts() {
+        (0..=MOST_POLES_IN_A_PLANE, 0) => Ok(()),
+        (poles, 0) => Err(FdtdError::TooManyPoles { material: id(), poles, most: MOST_POLES_IN_A_PLANE }),
+        _ => Err(FdtdError::Rings { material: id() }),
+    }
 }
 
 /// Refuses what no solver here can do with a material's electric side.
@@ -78,10 +161,6 @@ fn check_material(material: &Material) -> Result<(), FdtdError> {
 /// With the material, its value and the limit.
 pub fn check_electric(material: &Material) -> Result<(), FdtdError> {
     let id = || material.id.clone();
-    let poles = material.poles.iter().filter(|pole| pole.delta_eps != 0.0).count();
-    if poles > MOST_POLES {
-        return Err(FdtdError::TooManyPoles { material: id(), poles, most: MOST_POLES });
-    }
     if material.is_pec() {
         return Ok(());
     }
@@ -96,6 +175,22 @@ pub fn check_electric(material: &Material) -> Result<(), FdtdError> {
     for pole in &material.poles {
         at_least("Debye strength", pole.delta_eps, 0.0)?;
         at_least("relaxation time in s", pole.tau, f64::MIN_POSITIVE)?;
+    }
+    for resonance in &material.resonances {
+        match *resonance {
+            Resonance::Lorentz { delta_eps, frequency, damping } => {
+                at_least("Lorentz strength", delta_eps, 0.0)?;
+                at_least("damping of a resonance in 1/s", damping, 0.0)?;
+                at_least("resonance frequency in Hz", frequency, f64::MIN_POSITIVE)?;
+                if damping >= 2.0 * PI * frequency {
+                    return Err(FdtdError::Overdamped { material: id(), frequency, damping });
+                }
+            }
+            Resonance::Drude { frequency, collisions } => {
+                at_least("plasma frequency in Hz", frequency, 0.0)?;
+                at_least("collision rate in 1/s", collisions, f64::MIN_POSITIVE)?;
+            }
+        }
     }
     Ok(())
 }
@@ -162,7 +257,7 @@ mod tests {
     #[test]
     fn fast_poles_are_static_permittivity() {
         let fast = [DebyePole { delta_eps: 75.0, tau: 1e-18 }];
-        let (with, without) = (edge(5.0, 0.01, &fast, 4.7e-12, 0.002), edge(80.0, 0.01, &[], 4.7e-12, 0.002));
+        let (with, without) = (edge(5.0, 0.01, &fast, &[], 4.7e-12, 0.002), edge(80.0, 0.01, &[], &[], 4.7e-12, 0.002));
         assert_eq!((with.ca, with.cb, with.source), (without.ca, without.cb, without.source));
         assert_eq!(with.poles, vec![[0.0, 0.0, -75.0]]);
     }

@@ -45,6 +45,25 @@ pub enum FdtdError {
         /// The most that are known.
         most: usize,
     },
+    /// A material with a Lorentz pole, in the loops for two dimensions along z.
+    #[error("`{material}` has a Lorentz pole, which the loops for two dimensions do not know")]
+    Rings {
+        /// Identifier of the material.
+        material: String,
+    },
+    /// A Lorentz pole that does not ring.
+    #[error(
+        "`{material}` has a Lorentz pole of {frequency} Hz damped by {damping} 1/s, which must be below 2 pi times its frequency\n\n\
+         hint: two Debye poles describe a resonance that does not ring"
+    )]
+    Overdamped {
+        /// Identifier of the material.
+        material: String,
+        /// Frequency of the resonance, Hz.
+        frequency: f64,
+        /// Its damping, 1/s.
+        damping: f64,
+    },
     /// A material with a value that nature does not have.
     #[error("`{material}` has a {quantity} of {value}, but at least {least} is needed")]
     Material {

@@ -10,7 +10,9 @@ use super::layout::{Rows, padded_width};
 use super::reach::Cones;
 use super::setup::Setup;
 use super::solver::{Fdtd, Precision, Stepping};
-use crate::model::{DebyePole, Grid, Material, Model, Object, Order, Painted, TimeWindow, paint};
+use crate::model::{
+    DebyePole, Grid, MOST_POLES_IN_A_PLANE, Material, Model, Object, Order, Painted, TimeWindow, paint,
+};
 
 /// What a run will cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -107,7 +109,7 @@ fn trial(fdtd: &Fdtd, model: &Model, lossy: bool, poles: usize) -> Result<f64, F
 
 /// How many nodes have 0, 1, 2, … Debye poles.
 fn poles_per_node(setup: &Setup<'_>) -> Vec<usize> {
-    let mut nodes = vec![0; super::coefficients::MOST_POLES + 1];
+    let mut nodes = vec![0; MOST_POLES_IN_A_PLANE + 1];
     let per_entry = setup.painted.edges_per_entry();
     for (edge, count) in setup.edges.iter().zip(per_entry) {
         nodes[edge.poles.len()] += count;

@@ -1,6 +1,6 @@
 //! Which physical effects a model calls for, read off the model and never off a flag.
 
-use super::{EdgeMaterial, Material, Model, Painted, Painted3, Route};
+use super::{EdgeMaterial, Material, Model, Painted, Painted3, Resonance, Route};
 
 /// One effect: on or off, and why.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -64,6 +64,7 @@ impl Effects {
         let list = vec![
             survey.conductivity(),
             survey.debye(),
+            survey.resonance(),
             survey.averaging(),
             survey.conductor(),
             survey.absorbing(),
@@ -139,7 +140,7 @@ impl Survey<'_> {
     fn debye(&self) -> Effect {
         let strong = |m: &Material| m.poles.iter().filter(|pole| pole.delta_eps != 0.0).count();
         let poles = self.present.iter().map(|m| strong(m)).max().unwrap_or(0);
-        let of = |e: &super::EdgeMaterial| e.dispersive.map_or(0, |id| strong(&self.model.materials[id.index()]));
+        let of = |e: &super::EdgeMaterial| self.numbers(e, strong);
         let memory: usize = self.palette.iter().zip(&self.per_entry).map(|(e, count)| of(e) * count).sum();
         let who = self.who(|m| strong(m) > 0);
         let reason = who.map(|who| format!("the permittivity of {who} falls with frequency"));
@@ -150,6 +151,24 @@ impl Survey<'_> {
             poles => format!("Debye relaxation ({poles} poles)"),
         };
         self.effect(name, reason, memory as u64 * NUMBER, self.edges_where(|e| of(e) > 0))
+    }
+
+    /// Numbers of memory on an edge, of all materials whose poles act there.
+    fn numbers(&self, edge: &super::EdgeMaterial, of: impl Fn(&Material) -> usize) -> usize {
+        edge.shares().into_iter().map(|(id, _)| of(&self.model.materials[id.index()])).sum()
+    }
+
+    fn resonance(&self) -> Effect {
+        let numbers = |m: &Material| {
+            let acting = m.resonances.iter().filter(|resonance| !resonance.is_absent());
+            acting.map(|resonance| if matches!(resonance, Resonance::Lorentz { .. }) { 2 } else { 1 }).sum::<usize>()
+        };
+        let of = |e: &super::EdgeMaterial| self.numbers(e, numbers);
+        let memory: usize = self.palette.iter().zip(&self.per_entry).map(|(e, count)| of(e) * count).sum();
+        let who = self.who(|m| numbers(m) > 0);
+        let reason = who.map(|who| format!("{who} resonates or holds free charges"));
+        let reason = reason.ok_or("no material on the grid has Lorentz or Drude poles");
+        self.effect("Lorentz and Drude poles", reason, memory as u64 * NUMBER, self.edges_where(|e| of(e) > 0))
     }
 
     fn averaging(&self) -> Effect {

@@ -25,7 +25,56 @@ pub struct DebyePole {
     pub tau: f64,
 }
 
-/// A material: `#material` and its `#add_dispersion_debye` lines.
+/// A pole that is no relaxation.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub enum Resonance {
+    /// `#add_dispersion_lorentz`: `delta_eps w0² / (w0² + 2 i w delta - w²)`, `w0 = 2 pi frequency`.
+    Lorentz {
+        /// Change of relative permittivity from static to far above the resonance.
+        delta_eps: f64,
+        /// Frequency of the resonance, Hz.
+        frequency: f64,
+        /// Damping, 1/s; below `2 pi frequency`.
+        damping: f64,
+    },
+    /// `#add_dispersion_drude`: `- wp² / (w² - i w collisions)`, `wp = 2 pi frequency`.
+    Drude {
+        /// Plasma frequency, Hz.
+        frequency: f64,
+        /// Collisions, 1/s.
+        collisions: f64,
+    },
+}
+
+impl Resonance {
+    /// Whether it does nothing.
+    pub fn is_absent(&self) -> bool {
+        match *self {
+            Self::Lorentz { delta_eps, .. } => delta_eps == 0.0,
+            Self::Drude { frequency, .. } => frequency == 0.0,
+        }
+    }
+
+    /// What it adds to the relative permittivity at an angular frequency, 1/s: real part and loss `-Im`.
+    pub fn eps_r_at(&self, omega: f64) -> (f64, f64) {
+        let over = |strength: f64, re: f64, im: f64| {
+            let norm = re * re + im * im;
+            (strength * re / norm, strength * im / norm)
+        };
+        match *self {
+            Self::Lorentz { delta_eps, frequency, damping } => {
+                let resonant = (2.0 * std::f64::consts::PI * frequency).powi(2);
+                over(delta_eps * resonant, resonant - omega * omega, 2.0 * omega * damping)
+            }
+            Self::Drude { frequency, collisions } => {
+                let plasma = (2.0 * std::f64::consts::PI * frequency).powi(2);
+                over(plasma, -omega * omega, omega * collisions)
+            }
+        }
+    }
+}
+
+/// A material: `#material` and the `#add_dispersion_...` line that names it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
     /// Identifier, as in the input file.
@@ -40,6 +89,8 @@ pub struct Material {
     pub sigma_magnetic: f64,
     /// Debye relaxations; empty for a material without dispersion.
     pub poles: Vec<DebyePole>,
+    /// Lorentz and Drude poles; empty for a material without.
+    pub resonances: Vec<Resonance>,
     /// Whether edges between this and another material may take the mean of both. False for a perfect conductor, for
     /// dispersive materials, and for those that a material database marks so.
     pub averagable: bool,
@@ -55,6 +106,7 @@ impl Material {
             mu_r: 1.0,
             sigma_magnetic: 0.0,
             poles: vec![],
+            resonances: vec![],
             averagable: false,
         }
     }
@@ -66,7 +118,16 @@ impl Material {
 
     /// A non-magnetic material without dispersion.
     pub fn dielectric(id: impl Into<String>, eps_r: f64, sigma: f64) -> Self {
-        Self { id: id.into(), eps_r, sigma, mu_r: 1.0, sigma_magnetic: 0.0, poles: vec![], averagable: true }
+        Self {
+            id: id.into(),
+            eps_r,
+            sigma,
+            mu_r: 1.0,
+            sigma_magnetic: 0.0,
+            poles: vec![],
+            resonances: vec![],
+            averagable: true,
+        }
     }
 
     /// Whether this is a perfect electric conductor.
@@ -76,7 +137,7 @@ impl Material {
 
     /// Whether the permittivity changes with frequency.
     pub fn is_dispersive(&self) -> bool {
-        !self.poles.is_empty()
+        !self.poles.is_empty() || !self.resonances.is_empty()
     }
 
     /// Whether the material acts on the magnetic field.
@@ -84,9 +145,46 @@ impl Material {
         self.mu_r != 1.0 || self.sigma_magnetic != 0.0
     }
 
-    /// Relative permittivity (real part, without conduction) at a frequency in Hz.
+    /// How many Debye and Drude poles act, and how many Lorentz poles.
+    pub fn pole_counts(&self) -> (usize, usize) {
+        let lorentz = |resonance: &&Resonance| matches!(resonance, Resonance::Lorentz { .. });
+        let acting = || self.resonances.iter().filter(|resonance| !resonance.is_absent());
+        let ringing = acting().filter(lorentz).count();
+        let debye = self.poles.iter().filter(|pole| pole.delta_eps != 0.0).count();
+        (debye + acting().count() - ringing, ringing)
+    }
+
+    /// Relative permittivity (real part, without conduction) at a frequency in Hz; where a pole resonates, what a wave of the
+    /// same length without loss would need: `Re(sqrt(eps_r))²`.
     pub fn eps_r_at(&self, frequency: f64) -> f64 {
         let omega = 2.0 * std::f64::consts::PI * frequency;
+        if !self.resonances.is_empty() {
+            let relaxed = self.poles.iter().map(|pole| {
+                let turns = omega * pole.tau;
+                (pole.delta_eps / (1.0 + turns * turns), pole.delta_eps * turns / (1.0 + turns * turns))
+            });
+            let parts = relaxed.chain(self.resonances.iter().map(|resonance| resonance.eps_r_at(omega)));
+            let (re, loss) = parts.fold((self.eps_r, 0.0), |(re, loss), (a, b)| (re + a, loss + b));
+            return 0.5 * (re.hypot(loss) + re);
+        }
         self.eps_r + self.poles.iter().map(|pole| pole.delta_eps / (1.0 + (omega * pole.tau).powi(2))).sum::<f64>()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    /// At its resonance a Lorentz pole is pure loss, `delta_eps w0/(2 damping)`; at rest it is its strength. A Drude pole far
+    /// above its collisions is `-(fp/f)²`.
+    #[test]
+    fn resonances_are_those_of_their_formulas() {
+        let lorentz = Resonance::Lorentz { delta_eps: 2.0, frequency: 4e9, damping: 1e9 };
+        let (re, loss) = lorentz.eps_r_at(2.0 * PI * 4e9);
+        assert!(re.abs() < 1e-12 && (loss / (2.0 * 2.0 * PI * 4e9 / 2e9) - 1.0).abs() < 1e-12, "{re} {loss}");
+        assert_eq!(lorentz.eps_r_at(0.0), (2.0, 0.0));
+        let (re, _) = Resonance::Drude { frequency: 1e9, collisions: 1.0 }.eps_r_at(2.0 * PI * 2e9);
+        assert!((re / -0.25 - 1.0).abs() < 1e-12, "{re}");
     }
 }

@@ -28,14 +28,14 @@ pub use check::{
 pub use effects::{Effect, Effects};
 pub use grid::{Grid, ceil_half_down};
 pub use indices::Indices;
-pub use material::{DebyePole, Material, MaterialId};
+pub use material::{DebyePole, Material, MaterialId, Resonance};
 pub use object::{Object, Voxels};
 pub use order::{NoSuchOrder, Order};
 pub use paint::{PaintError, check_grid, check_two_dimensional, paint, paint3};
 pub use painted::Painted;
 pub use painted3::Painted3;
 pub use palette::{EdgeMaterial, FaceMaterial};
-pub use route::Route;
+pub use route::{MOST_POLES_IN_A_PLANE, Route};
 pub use sampled::{Between, Beyond, Sampled};
 pub use source::{Axis, Excitation, HertzianDipole, MagneticDipole, Receiver, Source, VoltageSource};
 pub use spec::{Model, TimeWindow};

@@ -11,8 +11,24 @@ pub struct EdgeMaterial {
     pub eps_r: f64,
     /// Conductivity, S/m; infinite on a perfect conductor.
     pub sigma: f64,
-    /// The one material whose poles act on this edge, if it is dispersive.
+    /// The one material whose poles act on this edge, if it is dispersive and not a mean.
     pub dispersive: Option<MaterialId>,
+    /// On the mean of four cells of which any is dispersive: their materials, whose poles act a quarter each.
+    pub quarters: Option<[MaterialId; 4]>,
+}
+
+impl EdgeMaterial {
+    /// The materials whose poles act on this edge, each with its share.
+    pub fn shares(&self) -> Vec<(MaterialId, f64)> {
+        let mut shares: Vec<(MaterialId, f64)> = self.dispersive.iter().map(|&id| (id, 1.0)).collect();
+        for &id in self.quarters.iter().flatten() {
+            match shares.iter_mut().find(|(known, _)| *known == id) {
+                Some((_, share)) => *share += 0.25,
+                None => shares.push((id, 0.25)),
+            }
+        }
+        shares
+    }
 }
 
 /// What lies on one face of the grid, where H lives.
@@ -32,11 +48,14 @@ impl FaceMaterial {
     }
 }
 
+/// Bits of permittivity and conductivity, and whose poles act.
+type Key = (u64, u64, Option<MaterialId>, Option<[MaterialId; 4]>);
+
 /// The distinct edge materials met so far.
 pub(super) struct Palette<'a> {
     materials: &'a [Material],
     entries: Vec<EdgeMaterial>,
-    by_value: HashMap<(u64, u64, Option<MaterialId>), u32>,
+    by_value: HashMap<Key, u32>,
     pure: Vec<Option<u32>>,
     means: HashMap<[MaterialId; 4], u32>,
 }
@@ -54,7 +73,8 @@ impl<'a> Palette<'a> {
         }
         let material = &self.materials[id.index()];
         let dispersive = material.is_dispersive().then_some(id);
-        let entry = self.enter(EdgeMaterial { eps_r: material.eps_r, sigma: material.sigma, dispersive });
+        let entry =
+            self.enter(EdgeMaterial { eps_r: material.eps_r, sigma: material.sigma, dispersive, quarters: None });
         self.pure[id.index()] = Some(entry);
         entry
     }
@@ -67,7 +87,8 @@ impl<'a> Palette<'a> {
         }
         let of =
             |value: fn(&Material) -> f64| ids.iter().map(|id| value(&self.materials[id.index()])).sum::<f64>() / 4.0;
-        let mean = EdgeMaterial { eps_r: of(|m| m.eps_r), sigma: of(|m| m.sigma), dispersive: None };
+        let quarters = ids.iter().any(|id| self.materials[id.index()].is_dispersive()).then_some(ids);
+        let mean = EdgeMaterial { eps_r: of(|m| m.eps_r), sigma: of(|m| m.sigma), dispersive: None, quarters };
         let entry = self.enter(mean);
         self.means.insert(ids, entry);
         entry
@@ -85,9 +106,12 @@ impl<'a> Palette<'a> {
 
     fn enter(&mut self, edge: EdgeMaterial) -> u32 {
         let entries = &mut self.entries;
-        *self.by_value.entry((edge.eps_r.to_bits(), edge.sigma.to_bits(), edge.dispersive)).or_insert_with(|| {
-            entries.push(edge);
-            entries.len() as u32 - 1
-        })
+        *self
+            .by_value
+            .entry((edge.eps_r.to_bits(), edge.sigma.to_bits(), edge.dispersive, edge.quarters))
+            .or_insert_with(|| {
+                entries.push(edge);
+                entries.len() as u32 - 1
+            })
     }
 }

@@ -2,6 +2,9 @@
 
 use super::{Material, MaterialId, Model, Source};
 
+/// The most Debye and Drude poles of a material that the plane knows.
+pub const MOST_POLES_IN_A_PLANE: usize = 3;
+
 /// The way through the embedded solver that a model takes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Route {
@@ -20,6 +23,7 @@ impl Model {
         let why = match self.grid.invariant_axis() {
             Some(2) => self.beyond_the_plane(),
             Some(axis) => Some(format!("the grid is one cell thick along {}", ["x", "y", "z"][axis])),
+            None if self.transverse_electric.is_some() => Some("E lies across the invariant axis (TE)".into()),
             None => Some("the grid has three dimensions".into()),
         };
         why.map_or(Route::Plane, |why| Route::Space { why })
@@ -34,9 +38,27 @@ impl Model {
     fn beyond_the_plane(&self) -> Option<String> {
         // Whatever an object is made of counts, whether or not a cell of it stays after painting.
         let used = |index: usize| self.objects.iter().any(|object| object.holds(MaterialId(index as u16)));
-        let magnetic = |(index, material): &(usize, &Material)| material.is_magnetic() && used(*index);
-        if let Some((_, material)) = self.materials.iter().enumerate().find(magnetic) {
-            return Some(format!("`{}` is magnetic", material.id));
+        let why = |(index, material): (usize, &Material)| {
+            let free_space = index == MaterialId::FREE_SPACE.index();
+            if !(free_space || used(index)) {
+                return None;
+            }
+            let id = &material.id;
+            let (poles, ringing) = material.pole_counts();
+            if material.is_magnetic() {
+                Some(format!("`{id}` is magnetic"))
+            } else if ringing > 0 {
+                Some(format!("`{id}` has a Lorentz pole"))
+            } else if poles > MOST_POLES_IN_A_PLANE {
+                Some(format!("`{id}` has {poles} poles"))
+            } else if poles > 0 && (free_space || self.dispersive_averaging) {
+                Some(format!("`{id}` relaxes and is averaged"))
+            } else {
+                None
+            }
+        };
+        if let Some(why) = self.materials.iter().enumerate().find_map(why) {
+            return Some(why);
         }
         let known = |source: &Source| matches!(source, Source::HertzianDipole(_));
         let unknown = self.sources.iter().position(|source| !known(source))?;

@@ -33,6 +33,8 @@ pub struct Model {
     pub threads: Option<usize>,
     /// Materials; the first is the perfect conductor, the second free space.
     pub materials: Vec<Material>,
+    /// Whether edges between dispersive materials take the mean of both, poles included (`#dispersive_averaging`).
+    pub dispersive_averaging: bool,
     /// Waveforms that sources refer to.
     pub waveforms: Vec<Waveform>,
     /// Objects, painted in order.
@@ -60,6 +62,7 @@ impl Model {
             pml_cells: None,
             threads: None,
             materials: vec![Material::pec(), Material::free_space()],
+            dispersive_averaging: false,
             waveforms: vec![],
             objects: vec![],
             sources: vec![],

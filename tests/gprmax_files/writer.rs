@@ -268,7 +268,8 @@ fn material(index: usize) -> impl Strategy<Value = Material> {
         move |(eps_r, sigma, mu_r, sigma_magnetic, poles, averagable)| {
             let poles = if sigma.is_infinite() { vec![] } else { poles };
             let averagable = averagable && sigma.is_finite() && poles.is_empty();
-            Material { id: format!("m.{index}-é"), eps_r, sigma, mu_r, sigma_magnetic, poles, averagable }
+            let id = format!("m.{index}-é");
+            Material { id, eps_r, sigma, mu_r, sigma_magnetic, poles, resonances: vec![], averagable }
         },
     )
 }

@@ -1,9 +1,10 @@
 //! Polarisation memory: for dispersive edges, and for no others.
 
+use super::super::coefficients::Edge;
 use super::super::dispersion::overlap;
 use super::super::real::Real;
 use super::super::state::{Numbers, State};
-use super::kernel::{Pole, relax};
+use super::kernel::{Pole, Ringing, relax};
 use super::setup::Setup3;
 
 /// The dispersive edges of a plane.
@@ -25,13 +26,15 @@ struct Run {
     place: usize,
 }
 
-/// The poles of each entry of the palette.
-pub type Poles<T> = Vec<Vec<Pole<T>>>;
+/// The relaxing and the ringing poles of each entry of the palette.
+pub type Poles<T> = Vec<(Vec<Pole<T>>, Vec<Ringing<T>>)>;
 
 /// The poles of each entry of the palette.
 pub fn poles<T: Real>(setup: &Setup3<'_>) -> Poles<T> {
     let pole = |&[give, keep, take]: &[f64; 3]| Pole { give: T::of(give), keep: T::of(keep), take: T::of(take) };
-    setup.edges.iter().map(|edge| edge.poles.iter().map(pole).collect()).collect()
+    let ringing = |&[a, b, c, d]: &[f64; 4]| Ringing { keep: [T::of(a), T::of(b)], take: [T::of(c), T::of(d)] };
+    let of = |edge: &Edge| (edge.poles.iter().map(pole).collect(), edge.ringing.iter().map(ringing).collect());
+    setup.edges.iter().map(of).collect()
 }
 
 impl<T: Real> State for Dispersion<T> {
@@ -45,7 +48,7 @@ impl<T: Real> Dispersion<T> {
     /// Finds the runs of dispersive edges of plane `i`; `None` where there are none. Walls are left out.
     pub fn new(setup: &Setup3<'_>, i: usize) -> Option<Self> {
         let [_, ny, nz] = setup.painted.cells;
-        if setup.edges.iter().all(|edge| edge.poles.is_empty()) {
+        if setup.edges.iter().all(|edge| edge.memories() == 0) {
             return None;
         }
         let (mut runs, mut of_row, mut place): (Vec<Run>, Vec<u32>, usize) = (vec![], vec![0], 0);
@@ -60,7 +63,7 @@ impl<T: Real> Dispersion<T> {
                     while k < nz && entry(k) == of && setup.on_wall(axis, [i, j, k]) == wall {
                         k += 1;
                     }
-                    let poles = setup.edges[of].poles.len();
+                    let poles = setup.edges[of].memories();
                     if poles > 0 && !wall && setup.active.e[axis] {
                         runs.push(Run { axis, k: begin, count: k - begin, entry: of, place });
                         place += (k - begin) * poles;
@@ -88,9 +91,10 @@ impl<T: Real> Dispersion<T> {
         for run in &self.runs[self.of_row[j] as usize..self.of_row[j + 1] as usize] {
             let e = &mut *e[run.axis];
             let Some((k, count)) = overlap(run.k, run.count, begin, e.len()) else { continue };
-            let poles = &poles[run.entry];
-            let memory = &mut self.memory[run.place..][..run.count * poles.len()];
-            relax(&mut e[k - begin..][..count], &old[run.axis][k..][..count], memory, k - run.k, poles);
+            let (relaxing, ringing) = &poles[run.entry];
+            let memory = &mut self.memory[run.place..][..run.count * (relaxing.len() + 2 * ringing.len())];
+            let (e, old) = (&mut e[k - begin..][..count], &old[run.axis][k..][..count]);
+            relax(e, old, memory, (run.count, k - run.k), relaxing, ringing);
         }
     }
 }

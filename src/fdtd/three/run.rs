@@ -207,7 +207,7 @@ fn bytes<T: Number>(setup: &Setup3<'_>) -> u64 {
     let fields = 6 * (nx as u64 + 2) * Sheet::<T>::bytes(ny, width);
     let magnetic = if setup.magnetic() { 6 * nx as u64 * Sheet::<T>::bytes(ny - 1, width) } else { 0 };
     let per_entry = setup.painted.edges_per_entry();
-    let poles: usize = setup.edges.iter().zip(per_entry).map(|(edge, count)| edge.poles.len() * count).sum();
+    let poles: usize = setup.edges.iter().zip(per_entry).map(|(edge, count)| edge.memories() * count).sum();
     let samples = setup.receivers.len() * 6 * 8 + setup.drives.len() * (8 + size_of::<T>());
     fields
         + magnetic

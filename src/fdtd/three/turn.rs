@@ -60,6 +60,7 @@ impl Turn {
             pml_cells: model.pml_cells.map(sides),
             threads: model.threads,
             materials: model.materials.clone(),
+            dispersive_averaging: model.dispersive_averaging,
             waveforms: model.waveforms.clone(),
             objects: vec![],
             sources: model.sources.iter().map(source).collect(),

@@ -71,9 +71,11 @@ fn read_whole(path: &Path, text: &str) -> Result<Input, InFileError> {
         .map(|line| Note { line, text: "ignored, as gprMax does: a command must start in the first column".into() })
         .collect();
     // gprMax builds materials, then their poles, waveforms, sources and receivers, then objects, each in file order.
-    let passes: [&[&str]; 6] = [
+    let passes: [&[&str]; 8] = [
         &["material"],
         &["add_dispersion_debye"],
+        &["add_dispersion_lorentz"],
+        &["add_dispersion_drude"],
         &["waveform", "excitation_file"],
         &["hertzian_dipole", "magnetic_dipole", "voltage_source"],
         &["rx", "rx_array"],

@@ -8,6 +8,7 @@
 mod build;
 mod commands;
 mod directives;
+mod dispersion;
 mod error;
 mod excitation;
 mod include;

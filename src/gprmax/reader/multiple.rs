@@ -4,13 +4,14 @@ use std::path::Path;
 
 use super::super::geometry::{GeometryError, read_voxels};
 use super::build::Note;
+use super::dispersion::dispersion;
 use super::error::Problem;
 use super::excitation::excitation_file;
 use super::lines::Command;
 use super::sources;
 use super::values::Parameters;
 use crate::files::nearest_name;
-use crate::model::{Axis, DebyePole, Material, MaterialId, Model, Object, Receiver};
+use crate::model::{Axis, Material, MaterialId, Model, Object, Receiver};
 
 /// Reads one of the commands that may stand any number of times.
 pub(super) fn apply(
@@ -21,7 +22,7 @@ pub(super) fn apply(
 ) -> Result<(), Problem> {
     match command.name {
         "material" => material(model, command),
-        "add_dispersion_debye" => debye(model, command),
+        "add_dispersion_debye" | "add_dispersion_lorentz" | "add_dispersion_drude" => dispersion(model, command, notes),
         "waveform" => sources::waveform(model, command),
         "excitation_file" => excitation_file(model, path, command),
         "hertzian_dipole" | "magnetic_dipole" | "voltage_source" => sources::source(model, command),
@@ -56,41 +57,16 @@ fn material(model: &mut Model, command: &Command<'_>) -> Result<(), Problem> {
         return Err(p.unsupported("the 65536th material"));
     }
     let averagable = sigma.is_finite();
-    model.add_material(Material { id: id.into(), eps_r, sigma, mu_r, sigma_magnetic, poles: vec![], averagable });
-    Ok(())
-}
-
-fn debye(model: &mut Model, command: &Command<'_>) -> Result<(), Problem> {
-    let form = "POLES DELTA_EPS TAU [DELTA_EPS TAU ...] ID [ID ...]";
-    let p = Parameters::of(command, form, |n| n >= 4)?;
-    let count = p.count(0, "a number of poles")?;
-    p.check("the number of poles", count as f64, count > 0, "1 or more")?;
-    if count.saturating_mul(2).saturating_add(2) > p.len() {
-        return Err(Problem::Parameters { command: command.name.into(), found: p.len(), form });
-    }
-    let mut poles = vec![];
-    for pole in 0..count {
-        let delta_eps = p.number(1 + 2 * pole, "a change of permittivity")?;
-        let tau = p.number(2 + 2 * pole, "a relaxation time in seconds")?;
-        p.check("the change of permittivity", delta_eps, delta_eps >= 0.0, "0 or more")?;
-        p.check("the relaxation time", tau, tau > 0.0, "above 0")?;
-        poles.push(DebyePole { delta_eps, tau });
-    }
-    for id in p.rest(1 + 2 * count) {
-        let index = material_id(model, &p, id)?.index();
-        let material = &mut model.materials[index];
-        if material.is_pec() {
-            return Err(p.unsupported("a perfect conductor with dispersion"));
-        }
-        if index == MaterialId::FREE_SPACE.index() {
-            return Err(p.unsupported("free space with dispersion"));
-        }
-        if material.is_dispersive() {
-            return Err(p.unsupported("a second set of poles for one material"));
-        }
-        material.poles.clone_from(&poles);
-        material.averagable = false;
-    }
+    model.add_material(Material {
+        id: id.into(),
+        eps_r,
+        sigma,
+        mu_r,
+        sigma_magnetic,
+        poles: vec![],
+        resonances: vec![],
+        averagable,
+    });
     Ok(())
 }
 
@@ -216,7 +192,7 @@ fn geometry_objects_read(model: &mut Model, path: &Path, command: &Command<'_>) 
     Ok(())
 }
 
-fn material_id(model: &Model, p: &Parameters<'_>, id: &str) -> Result<MaterialId, Problem> {
+pub(super) fn material_id(model: &Model, p: &Parameters<'_>, id: &str) -> Result<MaterialId, Problem> {
     if id == "pmc" {
         return Err(p.unsupported("a perfect magnetic conductor"));
     }

@@ -53,9 +53,8 @@ pub(super) fn start(path: &Path, commands: &[Command<'_>], order: Order) -> Resu
         model.threads = Some(threads.map_err(at(command))?);
     }
     if let Some(command) = find("dispersive_averaging") {
-        let on = Parameters::of(command, "n", |n| n == 1)
-            .and_then(|p| if p.yes_or_no(0, "a flag")? { Err(p.unsupported("the flag `y`")) } else { Ok(()) });
-        on.map_err(at(command))?;
+        let on = Parameters::of(command, "y|n", |n| n == 1).and_then(|p| p.yes_or_no(0, "a flag"));
+        model.dispersive_averaging = on.map_err(at(command))?;
     }
     if let Some(command) = find("src_steps") {
         model.source_steps = steps(command).map_err(at(command))?;

@@ -41,6 +41,22 @@ pub enum WriteError {
         /// What is allowed.
         limit: &'static str,
     },
+    /// A material with poles of more than one kind.
+    #[error(
+        "`{id}` has poles of more than one kind: gprMax knows only Debye, only Lorentz or only Drude poles in a material"
+    )]
+    KindsOfPoles {
+        /// Identifier of the material.
+        id: String,
+    },
+    /// A block of voxels of a material that a database of ours cannot hold.
+    #[error(
+        "`{id}` has Lorentz or Drude poles, which are not written into a material database\n\nhint: use boxes and spheres"
+    )]
+    Resonant {
+        /// Identifier of the material.
+        id: String,
+    },
     /// Something in the model refers to something that is not there.
     #[error("{what} number {index} of the model is not there")]
     Dangling {

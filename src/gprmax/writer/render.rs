@@ -12,7 +12,7 @@ use super::number::{exponent, number};
 use super::pulse_files::{PulseFiles, sampled};
 use super::voxel_files::{VoxelFiles, command_safe};
 use crate::files::write_bytes;
-use crate::model::{Beyond, Material, MaterialId, Model, Object, Order, Source, TimeWindow, VoltageSource};
+use crate::model::{Beyond, Material, MaterialId, Model, Object, Order, Resonance, Source, TimeWindow, VoltageSource};
 
 /// The template that is built in.
 pub const DEFAULT_TEMPLATE: &str = include_str!("../../../templates/model.in");
@@ -21,7 +21,8 @@ pub const DEFAULT_TEMPLATE: &str = include_str!("../../../templates/model.in");
 ///
 /// A template is one of minijinja (Jinja2). It sees texts `generator`, `title`, `domain_mode`, `time_window`, `time_step`,
 /// `stability_factor`, `threads`; lists `domain`, `spacing`, `cells`, `pml_cells`; the number `iterations`; `materials` (each
-/// `id`, `eps_r`, `sigma`, `mu_r`, `sigma_magnetic`, `poles` with `delta_eps`, `tau`), `waveforms` (`kind`, `amplitude`,
+/// `builtin`, `id`, `eps_r`, `sigma`, `mu_r`, `sigma_magnetic`, `poles` with `delta_eps`, `tau`, `resonance`, `resonances`), the flag
+/// `dispersive_averaging`, `waveforms` (`kind`, `amplitude`,
 /// `frequency`, `id`; `file`, `between`, `beyond` of pulses given as samples), `sources` (`command`, `polarisation`, `position`, `resistance`,
 /// `waveform`, `start`, `stop`), `receivers` (`position`, `name`),
 /// lists `source_steps`, `receiver_steps`, and `objects`, the finished lines. What is not given is an empty text or list; a name that does not exist is an error.
@@ -49,6 +50,7 @@ struct Page {
     pml_cells: Vec<usize>,
     threads: String,
     materials: Vec<MaterialLine>,
+    dispersive_averaging: bool,
     waveforms: Vec<WaveformLine>,
     sources: Vec<SourceLine>,
     receivers: Vec<ReceiverLine>,
@@ -67,6 +69,10 @@ struct MaterialLine {
     mu_r: String,
     sigma_magnetic: String,
     poles: Vec<PoleLine>,
+    /// `lorentz`, `drude` or empty.
+    resonance: &'static str,
+    /// The numbers of each pole, with blanks between them.
+    resonances: Vec<String>,
 }
 
 #[derive(Debug, Serialize)]
@@ -183,6 +189,7 @@ fn page(model: &Model, voxels: &VoxelFiles<'_>, pulses: &PulseFiles<'_>) -> Resu
         pml_cells: model.pml_cells.map_or(vec![], Vec::from),
         threads: model.threads.map_or(String::new(), |count| count.to_string()),
         materials: materials(model, voxels),
+        dispersive_averaging: model.dispersive_averaging,
         waveforms: model
             .waveforms
             .iter()
@@ -224,9 +231,22 @@ fn materials(model: &Model, voxels: &VoxelFiles<'_>) -> Vec<MaterialLine> {
         mu_r: number(m.mu_r),
         sigma_magnetic: number(m.sigma_magnetic),
         poles: m.poles.iter().map(|p| PoleLine { delta_eps: number(p.delta_eps), tau: number(p.tau) }).collect(),
+        resonance: match m.resonances.first() {
+            None => "",
+            Some(Resonance::Lorentz { .. }) => "lorentz",
+            Some(Resonance::Drude { .. }) => "drude",
+        },
+        resonances: m.resonances.iter().map(resonance).collect(),
     };
     let listed = |index: usize| index > MaterialId::FREE_SPACE.index() && !voxels.only_in_voxels(index);
     model.materials.iter().enumerate().filter(|(index, _)| listed(*index)).map(|(_, m)| line(m)).collect()
+}
+
+fn resonance(resonance: &Resonance) -> String {
+    match *resonance {
+        Resonance::Lorentz { delta_eps, frequency, damping } => [delta_eps, frequency, damping].map(number).join(" "),
+        Resonance::Drude { frequency, collisions } => [frequency, collisions].map(number).join(" "),
+    }
 }
 
 fn sources(model: &Model) -> Result<Vec<SourceLine>, WriteError> {
@@ -315,6 +335,13 @@ fn check(model: &Model) -> Result<(), WriteError> {
         )?;
         value("conductivity", material.sigma, material.sigma >= 0.0, "0 or more")?;
         value("magnetic loss", material.sigma_magnetic, material.sigma_magnetic >= 0.0, "0 or more")?;
+        let lorentz = |r: &Resonance| matches!(r, Resonance::Lorentz { .. });
+        let kinds = usize::from(!material.poles.is_empty())
+            + usize::from(material.resonances.iter().any(lorentz))
+            + usize::from(!material.resonances.iter().all(lorentz));
+        if kinds > 1 {
+            return Err(WriteError::KindsOfPoles { id: material.id.clone() });
+        }
         for pole in &material.poles {
             value(
                 "change of permittivity",

@@ -45,6 +45,11 @@ impl<'a> VoxelFiles<'a> {
                     if let Some(id) = used.iter().find(|id| id.index() >= model.materials.len()) {
                         return Err(WriteError::Dangling { what: "material", index: id.index() });
                     }
+                    let resonant =
+                        used.iter().map(|id| &model.materials[id.index()]).find(|m| !m.resonances.is_empty());
+                    if let Some(material) = resonant {
+                        return Err(WriteError::Resonant { id: material.id.clone() });
+                    }
                     if used.len() > MOST_MATERIALS {
                         return Err(WriteError::TooManyMaterials { count: used.len(), limit: MOST_MATERIALS });
                     }

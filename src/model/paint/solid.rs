@@ -71,8 +71,9 @@ pub fn description(object: &Object) -> (&'static str, MaterialId, [f64; 3]) {
 }
 
 /// Whether cells of a material claim their edges.
-fn claims(material: &Material, averaging: bool) -> bool {
-    !averaging || material.is_pec() || material.is_dispersive() || !material.averagable
+fn claims(model: &Model, material: &Material, averaging: bool) -> bool {
+    let dispersive = material.is_dispersive() && !model.dispersive_averaging;
+    !averaging || material.is_pec() || dispersive || !material.averagable
 }
 
 impl<'a> Solid<'a> {
@@ -84,7 +85,7 @@ impl<'a> Solid<'a> {
         };
         let solid = |shape, [low, high]: [[f64; 3]; 2], material, averaging| {
             let cells = layout.turned(&around(layout, low, high));
-            Ok(Self { number, cells, shape, material, claims: claims(known(material)?, averaging) })
+            Ok(Self { number, cells, shape, material, claims: claims(model, known(material)?, averaging) })
         };
         match *object {
             Object::Box { lower, upper, material, averaging } => {
@@ -94,7 +95,13 @@ impl<'a> Solid<'a> {
                     node(lower[axis])..node(upper[axis])
                 };
                 let cells = layout.turned(&std::array::from_fn(span));
-                Ok(Self { number, cells, shape: Shape::Box, material, claims: claims(known(material)?, averaging) })
+                Ok(Self {
+                    number,
+                    cells,
+                    shape: Shape::Box,
+                    material,
+                    claims: claims(model, known(material)?, averaging),
+                })
             }
             Object::Cylinder { start, end, radius, material, averaging } => {
                 let (start, end) = (snap(layout, start), snap(layout, end));
@@ -127,7 +134,7 @@ impl<'a> Solid<'a> {
                     inside(origin[axis])..inside(origin[axis].saturating_add(voxels.shape[axis] as i64))
                 };
                 let cells = layout.turned(&std::array::from_fn(span));
-                let claims = materials.iter().map(|material| claims(material, voxels.averaging)).collect();
+                let claims = materials.iter().map(|material| claims(model, material, voxels.averaging)).collect();
                 let shape = Shape::Voxels { voxels, origin, claims };
                 Ok(Self { number, cells, shape, material: MaterialId::FREE_SPACE, claims: false })
             }

@@ -230,7 +230,7 @@ impl Naive {
                 let of = |id: MaterialId| {
                     let stuff = &model.materials[id.index()];
                     let dispersive = stuff.is_dispersive().then_some(id);
-                    EdgeMaterial { eps_r: stuff.eps_r, sigma: stuff.sigma, dispersive }
+                    EdgeMaterial { eps_r: stuff.eps_r, sigma: stuff.sigma, dispersive, quarters: None }
                 };
                 let mean = |value: fn(&EdgeMaterial) -> f64| {
                     let mut ids = ids;
@@ -238,7 +238,12 @@ impl Naive {
                     ids.iter().map(|id| value(&of(*id))).sum::<f64>() / 4.0
                 };
                 let single = claimed.or(Some(ids[0]).filter(|id| ids == [*id; 4]));
-                let averaged = || EdgeMaterial { eps_r: mean(|e| e.eps_r), sigma: mean(|e| e.sigma), dispersive: None };
+                let averaged = || EdgeMaterial {
+                    eps_r: mean(|e| e.eps_r),
+                    sigma: mean(|e| e.sigma),
+                    dispersive: None,
+                    quarters: None,
+                };
                 edges.insert(node, single.map_or_else(averaged, of));
             }
             edges

@@ -8,5 +8,5 @@ mod relax;
 mod update;
 
 pub use absorb::{ColumnProfile, RowProfile, absorb_columns, absorb_columns_scaled, absorb_row, absorb_row_scaled};
-pub use relax::{Pole, relax};
+pub use relax::{Pole, Ringing, relax};
 pub use update::{EdgeRow, add_curl, add_curl_lossy, add_h, add_h_magnetic};

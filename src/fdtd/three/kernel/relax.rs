@@ -1,8 +1,8 @@
-//! Debye relaxation on one run of edges of the same material.
+//! Relaxation and resonance on one run of edges of the same material.
 
 use super::super::super::real::Real;
 
-/// The coefficients of one Debye pole.
+/// The coefficients of one Debye or Drude pole.
 #[derive(Debug, Clone, Copy)]
 pub struct Pole<T> {
     /// What a unit of polarisation memory takes from E: `eps0 exp(-dt/(2 tau))/(dt EA)`.
@@ -13,28 +13,62 @@ pub struct Pole<T> {
     pub take: T,
 }
 
+/// The coefficients of one Lorentz pole, real and imaginary part; its memory holds what it takes from E.
+#[derive(Debug, Clone, Copy)]
+pub struct Ringing<T> {
+    /// What remains of the memory after a step: `exp(q dt)`.
+    pub keep: [T; 2],
+    /// What a fall of E adds to the memory: `-eps0/(dt EA) exp(q dt/2) (w/q) (exp(q dt) - 1)`.
+    pub take: [T; 2],
+}
+
 /// Lets poles act on E after its plain step, the absorbing boundary and the sources.
 ///
 /// Piecewise-linear recursive scheme of Giannakis & Giannopoulos 2014 (doi:10.1109/TAP.2014.2308549):
-/// `E <- E - sum c0 T / EA`, `T <- c1 T + c2 (E_old - E)`. Departs from the paper: `T` is scaled by `dt`, and both halves
-/// of its update are done at once, so that in single precision the difference of E is formed before the product.
+/// `E <- E - sum Re(c0 T) / EA`, `T <- c1 T + c2 (E_old - E)`. Departs from the paper: `T` is scaled by `dt`, that of a
+/// Lorentz pole by `c0/EA` too, and both halves of its update are done at once, so that in single precision the difference of
+/// E is formed before the product.
 ///
-/// Shape: `memory` holds the poles one after the other, equally long; `e` begins at place `from` of each.
+/// Shape: `memory` holds the poles one after the other, `each` numbers for one, then two such parts, real and imaginary, for
+/// each Lorentz pole; `e` begins at place `from` of each.
 #[inline(always)]
-pub fn relax<T: Real>(e: &mut [T], e_old: &[T], memory: &mut [T], from: usize, poles: &[Pole<T>]) {
+pub fn relax<T: Real>(
+    e: &mut [T],
+    e_old: &[T],
+    memory: &mut [T],
+    (each, from): (usize, usize),
+    poles: &[Pole<T>],
+    ringing: &[Ringing<T>],
+) {
     let n = e.len();
     let e_old = &e_old[..n];
-    let each = memory.len() / poles.len().max(1);
-    for (memory, pole) in memory.chunks_exact(each).zip(poles) {
+    let (relaxing, resonant) = memory.split_at_mut(each * poles.len());
+    for (memory, pole) in relaxing.chunks_exact(each).zip(poles) {
         let memory = &memory[from..][..n];
         for k in 0..n {
             e[k] = e[k] - pole.give * memory[k];
         }
     }
-    for (memory, pole) in memory.chunks_exact_mut(each).zip(poles) {
+    for memory in resonant.chunks_exact(2 * each) {
+        let memory = &memory[from..][..n];
+        for k in 0..n {
+            e[k] = e[k] - memory[k];
+        }
+    }
+    for (memory, pole) in relaxing.chunks_exact_mut(each).zip(poles) {
         let memory = &mut memory[from..][..n];
         for k in 0..n {
             memory[k] = pole.keep * memory[k] + pole.take * (e_old[k] - e[k]);
+        }
+    }
+    for (memory, pole) in resonant.chunks_exact_mut(2 * each).zip(ringing) {
+        let (re, im) = memory.split_at_mut(each);
+        let (re, im) = (&mut re[from..][..n], &mut im[from..][..n]);
+        let ([keep_re, keep_im], [take_re, take_im]) = (pole.keep, pole.take);
+        for k in 0..n {
+            let (fall, a, b) = (e_old[k] - e[k], re[k], im[k]);
+            re[k] = keep_re * a - keep_im * b + take_re * fall;
+            im[k] = keep_im * a + keep_re * b + take_im * fall;
         }
     }
 }
