@@ -5,8 +5,8 @@ use std::ops::ControlFlow;
 
 use ballast_gpr::fdtd::{Fdtd, FdtdError, Precision};
 use ballast_gpr::model::{
-    Axis, DebyePole, Excitation, Grid, HertzianDipole, Material, Model, Object, Receiver, Resonance, Source,
-    TimeWindow, Waveform, WaveformKind,
+    AbsorbingProfile, Axis, DebyePole, Excitation, Formulation, Grading, Grid, HertzianDipole, Material, Model, Object,
+    Receiver, Resonance, Source, Stretch, TimeWindow, Waveform, WaveformKind,
 };
 
 /// A block of a material under a dipole along x; 24 x 22 x 26 cells of 2 mm.
@@ -197,4 +197,65 @@ fn models_that_cannot_be_are_refused_by_name() {
         dipole.position[2] = 0.0;
     };
     assert!(message(&low, transverse(with(vec![]), 9)).starts_with("source 1 lies at node 0 along z, but the fields"));
+}
+
+fn stretched(model: &Model, formulation: Formulation, stretches: Vec<Stretch>) -> Model {
+    Model { absorbing_profile: AbsorbingProfile { formulation, stretches }, ..model.clone() }
+}
+
+/// The default written out, and in the other formulation, is the default; alpha, kappa and a second stretch matter.
+#[test]
+fn a_stretch_that_does_nothing_is_absent_to_the_bit() {
+    let base = Stretch::default();
+    let more = [
+        ("alpha", vec![Stretch { alpha: Grading::constant(0.05), ..base }]),
+        ("kappa", vec![Stretch { kappa: Grading { order: 2, reverse: false, min: 1.0, max: Some(4.0) }, ..base }]),
+    ];
+    for model in [scene(with(vec![]), 150), transverse(with(vec![]), 150)] {
+        let plain = bits(&model);
+        assert_eq!(bits(&stretched(&model, Formulation::Recursive, vec![base])), plain);
+        assert_eq!(bits(&stretched(&model, Formulation::Multipole, vec![base])), plain);
+        for (name, stretches) in &more {
+            let moved = moved(&stretched(&model, Formulation::Recursive, stretches.clone()), &model);
+            assert!(moved > 1e-4, "{name} moves the trace by {moved:e}");
+        }
+        // A factor, and a term, that stretches nothing: the same sums, once more rounded.
+        let nothing = |kappa| Stretch { kappa: Grading::constant(kappa), sigma: Grading::constant(0.0), ..base };
+        for (formulation, kappa) in [(Formulation::Recursive, 1.0), (Formulation::Multipole, 0.0)] {
+            let model = stretched(&model, formulation, vec![base, nothing(kappa)]);
+            let (found, wanted) = (run(&model, Precision::Double).unwrap(), run(&transform(&model), Precision::Double));
+            let worst = found.iter().zip(wanted.unwrap()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            let peak = found.iter().fold(0.0f64, |peak, v| peak.max(v.abs()));
+            assert!(worst < 1e-12 * peak, "{formulation:?}: {worst:e} of {peak:e}");
+        }
+    }
+}
+
+/// The model with the default boundary.
+fn transform(model: &Model) -> Model {
+    stretched(model, Formulation::Recursive, vec![])
+}
+
+/// Boundaries of every kind through a conductor and a relaxing block: 10⁴ steps fade.
+#[test]
+fn boundaries_stay_bounded_over_ten_thousand_steps() {
+    let growing = |order, max| Grading { order, reverse: false, min: 0.0, max: Some(max) };
+    let base = Stretch::default();
+    let first = Stretch { sigma: growing(4, 0.5), ..base };
+    let second = Stretch { alpha: growing(4, 0.55), sigma: growing(4, 1.0), ..base };
+    let third = Stretch { kappa: Grading::constant(0.0), alpha: growing(1, 0.05), sigma: growing(3, 2.0) };
+    for (formulation, stretches) in [
+        (Formulation::Recursive, vec![Stretch { kappa: Grading::constant(2.0), ..base }]),
+        (Formulation::Recursive, vec![first, second]),
+        (Formulation::Multipole, vec![first, third]),
+    ] {
+        let wet = Material { poles: vec![DebyePole { delta_eps: 9.0, tau: 2e-11 }], ..with(vec![]) };
+        let model = transverse(wet, 10_000);
+        let all = run(&stretched(&model, formulation, stretches), Precision::Single).unwrap();
+        for samples in all.chunks_exact(10_000) {
+            let peak = |part: &[f64]| part.iter().fold(0.0f64, |peak, v| peak.max(v.abs()));
+            let (early, late) = (peak(&samples[..1_000]), peak(&samples[9_000..]));
+            assert!(late <= 1e-3 * early, "{formulation:?}: {late:e} after {early:e}");
+        }
+    }
 }

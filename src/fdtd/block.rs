@@ -16,7 +16,6 @@
 
 use std::ops::Range;
 
-use super::coefficients::Slab;
 use super::conductor::{Cut, Cuts};
 use super::dispersion::{Dispersion, overlap};
 use super::kernel::{self, ColumnProfile, Difference, Fourth, RowProfile, Second};
@@ -24,6 +23,7 @@ use super::layout::{LANES, Rows, padded_width};
 use super::reach::Cones;
 use super::real::Real;
 use super::setup::Setup;
+use super::slab::Slab;
 use crate::model::Order;
 
 /// One thread's share of the grid.

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::FdtdError;
+use super::slab::Slab;
 use crate::model::{DebyePole, EdgeMaterial, MOST_POLES_IN_A_PLANE, Material, Model, Painted, Resonance};
 use crate::units::constants::{EPSILON_0, MU_0, Z0};
 
@@ -195,40 +196,16 @@ pub fn check_electric(material: &Material) -> Result<(), FdtdError> {
     Ok(())
 }
 
-/// The profile of an absorbing slab: `RA - 1, RB, RE, RF` at a depth, 0 at the entrance and 1 at the wall.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Slab {
-    /// Absorbing cells.
-    pub cells: usize,
-    /// Conductivity at the wall, S/m.
-    pub sigma_max: f64,
-    dt: f64,
-}
-
-impl Slab {
-    /// A slab whose wall conducts so much.
-    pub fn new(cells: usize, sigma_max: f64, dt: f64) -> Self {
-        Self { cells, sigma_max, dt }
-    }
-
-    /// `RA - 1, RB, RE, RF` at a depth counted in cells from the entrance; no absorption at or before it.
-    ///
-    /// First-order HORIPML with `kappa = 1`, `alpha = 0` and `sigma = sigma_max depth⁴`.
-    pub fn at(&self, depth: f64) -> [f64; 4] {
-        let sigma = self.sigma_max * (depth.max(0.0) / self.cells as f64).powi(4);
-        let below = 2.0 * EPSILON_0 + self.dt * sigma;
-        let ra = 2.0 * EPSILON_0 / below;
-        [-self.dt * sigma / below, ra, (2.0 * EPSILON_0 - self.dt * sigma) / below, 2.0 * sigma * self.dt / below]
-    }
-}
-
 /// The absorbing slabs at x0, y0, xmax, ymax.
 ///
 /// `sigma_max = 0.8 * 5/(Z0 d sqrt(eps_r))`, `eps_r` being the mean over the layer of absorbing
 /// cells next to the slab's entrance, corners and conductors (as `eps_r` 1) included. Which layer gprMax takes was found by
 /// running it on a scene with different materials in each layer: with this one traces agree to 1e-14, with its
 /// neighbour to 1e-4.
-pub fn slabs(model: &Model, painted: &Painted) -> [Slab; 4] {
+///
+/// # Errors
+/// See [`Slab::new`].
+pub fn slabs(model: &Model, painted: &Painted) -> Result<[Slab; 4], FdtdError> {
     let [x0, y0, _, x1, y1, _] = model.absorbing_cells();
     let [nx, ny] = painted.cells_xy;
     let dt = model.time_step();
@@ -236,17 +213,17 @@ pub fn slabs(model: &Model, painted: &Painted) -> [Slab; 4] {
     let across_y = |i: usize| (0..ny).map(|j| eps_r(i, j)).sum::<f64>() / ny as f64;
     let across_x = |j: usize| (0..nx).map(|i| eps_r(i, j)).sum::<f64>() / nx as f64;
     let [dx, dy, _] = model.grid.spacing;
-    let slab = |cells: usize, d: f64, mean: &dyn Fn() -> f64| Slab {
-        cells,
-        sigma_max: if cells == 0 { 0.0 } else { 0.8 * 5.0 / (Z0 * d * mean().sqrt()) },
-        dt,
+    let profile = &model.absorbing_profile;
+    let slab = |cells: usize, d: f64, mean: &dyn Fn() -> f64| match cells {
+        0 => Ok(Slab::none()),
+        _ => Slab::new(profile, cells, 0.8 / (Z0 * d * mean().sqrt()), dt),
     };
-    [
-        slab(x0, dx, &|| across_y(x0 - 1)),
-        slab(y0, dy, &|| across_x(y0 - 1)),
-        slab(x1, dx, &|| across_y(nx - x1)),
-        slab(y1, dy, &|| across_x(ny - y1)),
-    ]
+    Ok([
+        slab(x0, dx, &|| across_y(x0 - 1))?,
+        slab(y0, dy, &|| across_x(y0 - 1))?,
+        slab(x1, dx, &|| across_y(nx - x1))?,
+        slab(y1, dy, &|| across_x(ny - y1))?,
+    ])
 }
 
 #[cfg(test)]
@@ -260,13 +237,5 @@ mod tests {
         let (with, without) = (edge(5.0, 0.01, &fast, &[], 4.7e-12, 0.002), edge(80.0, 0.01, &[], &[], 4.7e-12, 0.002));
         assert_eq!((with.ca, with.cb, with.source), (without.ca, without.cb, without.source));
         assert_eq!(with.poles, vec![[0.0, 0.0, -75.0]]);
-    }
-
-    /// At the entrance nothing is absorbed: the correction is exactly zero while `phi` is.
-    #[test]
-    fn the_entrance_absorbs_nothing() {
-        let slab = Slab { cells: 10, sigma_max: 5.0, dt: 4.7e-12 };
-        assert_eq!(slab.at(0.0), [0.0, 1.0, 1.0, 0.0]);
-        assert_eq!(slab.at(-3.0), slab.at(0.0));
     }
 }

@@ -251,6 +251,34 @@ pub enum FdtdError {
         /// Its node along this axis.
         node: usize,
     },
+    /// More stretches than a boundary of second order has.
+    #[error("the absorbing boundary has {count} stretches (`#pml_cfs`), at most 2 are known")]
+    Stretches {
+        /// How many there are.
+        count: usize,
+    },
+    /// A stretch that is none.
+    #[error(
+        "the absorbing boundary has a kappa of {kappa} at {depth} cells from its entrance, and a least value of {least}: kappa \
+         must be above 0, alpha and sigma 0 or more"
+    )]
+    Shrinks {
+        /// Depth, cells.
+        depth: f64,
+        /// The real stretch there.
+        kappa: f64,
+        /// The least of all values there.
+        least: f64,
+    },
+    /// Two stretches that together amplify some frequency.
+    #[error(
+        "the two stretches of the absorbing boundary together amplify some frequency at {depth} cells from the entrance\n\n\
+         hint: give the second an alpha of 1.1 times the sigma of the first, or leave one `#pml_cfs` out"
+    )]
+    Amplifies {
+        /// Depth, cells.
+        depth: f64,
+    },
     /// Fields of a three-dimensional run that grew beyond reason.
     #[error(
         "E{} at step {step} is {value:e} V/m at node ({}, {}, {}), ({} m, {} m, {} m): the run diverged\n\n\

@@ -25,6 +25,7 @@ mod predict;
 mod reach;
 mod real;
 mod setup;
+mod slab;
 mod solver;
 mod state;
 mod team;

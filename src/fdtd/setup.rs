@@ -1,7 +1,8 @@
 //! A model checked and turned into numbers, before anything of its size is allocated.
 
 use super::FdtdError;
-use super::coefficients::{Edge, Slab, edges, slabs};
+use super::coefficients::{Edge, edges, slabs};
+use super::slab::Slab;
 use crate::model::{
     Axis, Model, Order, Painted, Source, available_memory, check_absorbing_cells, check_recording,
     check_stability_factor, check_two_dimensional,
@@ -51,7 +52,7 @@ impl<'a> Setup<'a> {
             drives: drives.collect::<Result<_, _>>()?,
             receivers: receivers.collect::<Result<_, _>>()?,
             painted,
-            slabs: slabs(model, painted),
+            slabs: slabs(model, painted)?,
             edges,
             order: model.order,
             iterations: model.iterations(),

@@ -4,6 +4,7 @@
 //! boundaries: the content of a gprMax input file. It is built from a scene by `raster` or from anybody's `.in` file by
 //! `gprmax`, and both solvers take it. [`paint`] turns the objects into cells and edges by gprMax's rules.
 
+mod absorbing;
 mod check;
 mod effects;
 mod grid;
@@ -21,6 +22,7 @@ mod source;
 mod spec;
 mod waveform;
 
+pub use absorbing::{AbsorbingProfile, Formulation, Grading, Stretch};
 pub use check::{
     CheckError, LEAST_CELLS_PER_WAVELENGTH, Resolution, WANTED_CELLS_PER_WAVELENGTH, available_memory,
     check_absorbing_cells, check_memory, check_mode, check_recording, check_stability_factor, mebibytes,

@@ -38,6 +38,11 @@ impl Model {
     fn beyond_the_plane(&self) -> Option<String> {
         // Whatever an object is made of counts, whether or not a cell of it stays after painting.
         let used = |index: usize| self.objects.iter().any(|object| object.holds(MaterialId(index as u16)));
+        if !self.absorbing_profile.fits_a_plane() {
+            return Some(
+                "the profile of the absorbing boundary is more than one stretch that begins with nothing".into(),
+            );
+        }
         let why = |(index, material): (usize, &Material)| {
             let free_space = index == MaterialId::FREE_SPACE.index();
             if !(free_space || used(index)) {

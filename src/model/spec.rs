@@ -1,6 +1,6 @@
 //! The model itself.
 
-use super::{Axis, Grid, Material, MaterialId, Object, Order, Receiver, Source, Waveform};
+use super::{AbsorbingProfile, Axis, Grid, Material, MaterialId, Object, Order, Receiver, Source, Waveform};
 
 /// How long to simulate.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,6 +29,8 @@ pub struct Model {
     pub time_window: TimeWindow,
     /// Absorbing cells at x0, y0, z0, xmax, ymax, zmax; `None` is gprMax's default of 10 on every side of a changing axis.
     pub pml_cells: Option<[usize; 6]>,
+    /// What they do (`#pml_cfs`, `#pml_formulation`).
+    pub absorbing_profile: AbsorbingProfile,
     /// Threads asked for by the model (`#omp_threads`).
     pub threads: Option<usize>,
     /// Materials; the first is the perfect conductor, the second free space.
@@ -60,6 +62,7 @@ impl Model {
             order: Order::Second,
             time_window,
             pml_cells: None,
+            absorbing_profile: AbsorbingProfile::default(),
             threads: None,
             materials: vec![Material::pec(), Material::free_space()],
             dispersive_averaging: false,

@@ -5,13 +5,13 @@ use std::ops::Range;
 use super::super::dispersion::overlap;
 use super::super::instructions::InstructionSet;
 use super::super::state::{Numbers, State};
-use super::absorbing::{Absorbing, Columns, Profiles, profiles};
+use super::absorbing::{Absorbing, Columns, Profiles, Store, profiles};
 use super::drive::{Act, Drive};
 use super::grades::{Grades, Lookup, Table};
 use super::instructions::Number;
 use super::kernel::{
-    ColumnProfile, EdgeRow, RowProfile, absorb_columns, absorb_columns_scaled, absorb_row, absorb_row_scaled, add_curl,
-    add_curl_lossy, add_h, add_h_magnetic,
+    EdgeRow, absorb_columns, absorb_columns_scaled, absorb_columns_twice, absorb_row, absorb_row_scaled,
+    absorb_row_twice, add_curl, add_curl_lossy, add_h, add_h_magnetic,
 };
 use super::poles::{Dispersion, Poles, poles};
 use super::reach::Cones;
@@ -112,6 +112,8 @@ pub struct Shared<T> {
     poles: Poles<T>,
     /// What need not be stepped.
     pub cones: Cones,
+    /// A row of ones: the scale of H where nothing is magnetic.
+    ones: Vec<T>,
 }
 
 impl<T: Number> State for Plane<T> {
@@ -136,7 +138,7 @@ impl<T: Number> Shared<T> {
     /// Settles what all planes share; `skip`: leaves out what no wave has reached or no receiver will see.
     pub fn new(setup: &Setup3<'_>, set: InstructionSet, skip: bool) -> Self {
         let cells = setup.painted.cells;
-        let (low, high) = (setup.slabs[1].cells, setup.slabs[4].cells);
+        let (low, high) = (setup.slabs[1].extent(), setup.slabs[4].cells);
         let slot = |j: usize| if j < low { j } else { low + (j + high).saturating_sub(cells[1]) };
         Self {
             set,
@@ -149,6 +151,7 @@ impl<T: Number> Shared<T> {
             z: Columns::both(setup),
             poles: poles(setup),
             cones: Cones::new(setup, skip),
+            ones: vec![T::of(1.0); padded(cells[2])],
         }
     }
 
@@ -334,29 +337,28 @@ impl<T: Number> Step<'_, T> {
         if let Some((profiles, memory)) = &mut absorbing.x {
             let [first, second] = &mut memory.h;
             if active[1] {
-                absorb_h(hy, db.map(|db| db[1].at(j, k, n)), dx_z, first.at_mut(j, k, n), profiles[2]);
+                self.absorb(hy, db.map(|db| db[1].at(j, k, n)), dx_z, first, (j, k), profiles, 2);
             }
             if active[2] {
-                absorb_h(hz, db.map(|db| db[2].at(j, k, n)), dx_y, second.at_mut(j, k, n), profiles[3]);
+                self.absorb(hz, db.map(|db| db[2].at(j, k, n)), dx_y, second, (j, k), profiles, 3);
             }
         }
         if let (Some((slot, profiles)), Some(memory)) = (&self.shared.y[j], &mut absorbing.y) {
             let [first, second] = &mut memory.h;
-            absorb_h(hz, db.map(|db| db[2].at(j, k, n)), dy_x, first.at_mut(*slot, k, n), profiles[2]);
-            absorb_h(hx, db.map(|db| db[0].at(j, k, n)), dy_z, second.at_mut(*slot, k, n), profiles[3]);
+            self.absorb(hz, db.map(|db| db[2].at(j, k, n)), dy_x, first, (*slot, k), profiles, 2);
+            self.absorb(hx, db.map(|db| db[0].at(j, k, n)), dy_z, second, (*slot, k), profiles, 3);
         }
         for (columns, memory) in self.shared.z.iter().zip(&mut absorbing.z) {
             let Some((begin, count)) = overlap(columns.k, columns.count, k, n) else { continue };
             let (from, within) = (begin - k, begin - columns.k);
             let [first, second] = &mut memory.h;
             let (x, y) = (db.map(|db| db[0].at(j, begin, count)), db.map(|db| db[1].at(j, begin, count)));
-            let (first, second) = (first.at_mut(j, within, count), second.at_mut(j, within, count));
             let (hx, hy) = (&mut hx[from..][..count], &mut hy[from..][..count]);
             if active[0] {
-                absorb_h_end(hx, x, part(dz_y, from, count), first, columns.profile(2, within));
+                self.absorb_end(hx, x, part(dz_y, from, count), first, (j, within), columns, 2);
             }
             if active[1] {
-                absorb_h_end(hy, y, part(dz_x, from, count), second, columns.profile(3, within));
+                self.absorb_end(hy, y, part(dz_x, from, count), second, (j, within), columns, 3);
             }
         }
     }
@@ -395,29 +397,28 @@ impl<T: Number> Step<'_, T> {
             if let Some((profiles, memory)) = &mut absorbing.x {
                 let [first, second] = &mut memory.e;
                 if active[1] {
-                    absorb_row_scaled(ey, cb[1], dx_z, first.at_mut(j, k, n), profiles[0]);
+                    self.absorb(ey, Some(cb[1]), dx_z, first, (j, k), profiles, 0);
                 }
                 if active[2] {
-                    absorb_row_scaled(ez, cb[2], dx_y, second.at_mut(j, k, n), profiles[1]);
+                    self.absorb(ez, Some(cb[2]), dx_y, second, (j, k), profiles, 1);
                 }
             }
             if let (Some((slot, profiles)), Some(memory)) = (&self.shared.y[j], &mut absorbing.y) {
                 let [first, second] = &mut memory.e;
-                absorb_row_scaled(ez, cb[2], dy_x, first.at_mut(*slot, k, n), profiles[0]);
-                absorb_row_scaled(ex, cb[0], dy_z, second.at_mut(*slot, k, n), profiles[1]);
+                self.absorb(ez, Some(cb[2]), dy_x, first, (*slot, k), profiles, 0);
+                self.absorb(ex, Some(cb[0]), dy_z, second, (*slot, k), profiles, 1);
             }
             for (columns, memory) in self.shared.z.iter().zip(&mut absorbing.z) {
                 let Some((begin, count)) = overlap(columns.k, columns.count, k, n) else { continue };
                 let (from, within) = (begin - k, begin - columns.k);
                 let [first, second] = &mut memory.e;
                 let (x, y) = (&cb[0][from..][..count], &cb[1][from..][..count]);
-                let (first, second) = (first.at_mut(j, within, count), second.at_mut(j, within, count));
                 let (ex, ey) = (&mut ex[from..][..count], &mut ey[from..][..count]);
                 if active[0] {
-                    absorb_columns_scaled(ex, x, part(dz_y, from, count), first, columns.profile(0, within));
+                    self.absorb_end(ex, Some(x), part(dz_y, from, count), first, (j, within), columns, 0);
                 }
                 if active[1] {
-                    absorb_columns_scaled(ey, y, part(dz_x, from, count), second, columns.profile(1, within));
+                    self.absorb_end(ey, Some(y), part(dz_x, from, count), second, (j, within), columns, 1);
                 }
             }
         }
@@ -439,6 +440,56 @@ impl<T: Number> Step<'_, T> {
             ez.fill(T::default());
         }
     }
+
+    /// Corrects a row within a slab across x or y; `scale` is absent for H where nothing is magnetic.
+    #[inline(always)]
+    #[expect(clippy::too_many_arguments, reason = "a row, its coefficients and its memory")]
+    fn absorb(
+        &self,
+        field: &mut [T],
+        scale: Option<&[T]>,
+        d: [&[T]; 2],
+        store: &mut Store<T>,
+        (row, k): (usize, usize),
+        profiles: &Profiles<T>,
+        of: usize,
+    ) {
+        let n = field.len();
+        let phi = store.phi.at_mut(row, k, n);
+        match (&mut store.second, &profiles.second, scale) {
+            (Some(second), Some(filters), _) => {
+                let scale = scale.unwrap_or(&self.shared.ones);
+                absorb_row_twice(field, scale, d, [phi, second.at_mut(row, k, n)], filters[of]);
+            }
+            (_, _, None) => absorb_row(field, d, phi, profiles.first[of]),
+            (_, _, Some(scale)) => absorb_row_scaled(field, scale, d, phi, profiles.first[of]),
+        }
+    }
+
+    /// Corrects the end of a row that lies within a slab across z; `scale` is absent for H where nothing is magnetic.
+    #[inline(always)]
+    #[expect(clippy::too_many_arguments, reason = "a row, its coefficients and its memory")]
+    fn absorb_end(
+        &self,
+        field: &mut [T],
+        scale: Option<&[T]>,
+        d: [&[T]; 2],
+        store: &mut Store<T>,
+        (row, within): (usize, usize),
+        columns: &Columns<T>,
+        of: usize,
+    ) {
+        let n = field.len();
+        let phi = store.phi.at_mut(row, within, n);
+        match (&mut store.second, columns.filter(of, within), scale) {
+            (Some(second), Some(filter), _) => {
+                let scale = scale.unwrap_or(&self.shared.ones);
+                absorb_columns_twice(field, scale, d, [phi, second.at_mut(row, within, n)], filter);
+            }
+            (_, _, None) => absorb_columns(field, d, phi, columns.profile(of, within)),
+            (_, _, Some(scale)) => absorb_columns_scaled(field, scale, d, phi, columns.profile(of, within)),
+        }
+    }
 }
 
 /// `n` nodes from node `k` on of row `j` of three sheets. (A closure here would be compiled without the wide instructions
@@ -447,24 +498,6 @@ impl<T: Number> Step<'_, T> {
 fn rows_mut<T: Number>(sheets: &mut [Sheet<T>; 3], j: usize, (k, n): (usize, usize)) -> [&mut [T]; 3] {
     let [x, y, z] = sheets;
     [x.at_mut(j, k, n), y.at_mut(j, k, n), z.at_mut(j, k, n)]
-}
-
-/// Corrects a row of H; `db` where anything is magnetic.
-#[inline(always)]
-fn absorb_h<T: Number>(h: &mut [T], db: Option<&[T]>, d: [&[T]; 2], phi: &mut [T], profile: RowProfile<T>) {
-    match db {
-        None => absorb_row(h, d, phi, profile),
-        Some(db) => absorb_row_scaled(h, db, d, phi, profile),
-    }
-}
-
-/// Corrects one end of a row of H; `db` where anything is magnetic.
-#[inline(always)]
-fn absorb_h_end<T: Number>(h: &mut [T], db: Option<&[T]>, d: [&[T]; 2], phi: &mut [T], profile: ColumnProfile<'_, T>) {
-    match db {
-        None => absorb_columns(h, d, phi, profile),
-        Some(db) => absorb_columns_scaled(h, db, d, phi, profile),
-    }
 }
 
 /// `count` nodes from node `k` on of both sides of a difference.

@@ -3,8 +3,9 @@
 use std::borrow::Cow;
 
 use super::super::FdtdError;
-use super::super::coefficients::{Edge, Slab, check_electric, edge_of};
+use super::super::coefficients::{Edge, check_electric, edge_of};
 use super::super::setup::node_in_grid;
+use super::super::slab::Slab;
 use super::drive::{Drive, Load, drives, loads};
 use crate::model::{
     Axis, FaceMaterial, Indices, Model, Order, Painted3, available_memory, check_absorbing_cells, check_grid,
@@ -95,7 +96,7 @@ impl<'a> Setup3<'a> {
             loads,
             receivers: receivers.collect::<Result<_, _>>()?,
             faces,
-            slabs: slabs(model, &painted),
+            slabs: slabs(model, &painted)?,
             painted,
             edges,
             iterations: model.iterations(),
@@ -216,14 +217,15 @@ pub fn check_model(model: &Model) -> Result<(), FdtdError> {
 ///
 /// `sigma_max = 0.8 * 5/(Z0 d sqrt(eps_r mu_r))`, both being the mean over the layer of absorbing cells next to the
 /// slab's entrance, rims and conductors (as `eps_r` 1) included.
-fn slabs(model: &Model, painted: &Painted3) -> [Slab; 6] {
+///
+/// # Errors
+/// See [`Slab::new`].
+fn slabs(model: &Model, painted: &Painted3) -> Result<[Slab; 6], FdtdError> {
     let absorbing = model.absorbing_cells();
     let n = painted.cells;
-    std::array::from_fn(|side| {
+    let mut slabs = [Slab::none(); 6];
+    for (side, slab) in slabs.iter_mut().enumerate().filter(|(side, _)| absorbing[*side] > 0) {
         let (axis, cells) = (side % 3, absorbing[side]);
-        if cells == 0 {
-            return Slab::new(0, 0.0, model.time_step());
-        }
         let layer = if side < 3 { cells - 1 } else { n[axis] - cells };
         let [a, b] = OTHERS[axis];
         let (mut eps_r, mut mu_r) = (0.0, 0.0);
@@ -238,9 +240,10 @@ fn slabs(model: &Model, painted: &Painted3) -> [Slab; 6] {
         }
         let count = (n[a] * n[b]) as f64;
         let (eps_r, mu_r) = (eps_r / count, mu_r / count);
-        let sigma_max = 0.8 * 5.0 / (Z0 * model.grid.spacing[axis] * (eps_r * mu_r).sqrt());
-        Slab::new(cells, sigma_max, model.time_step())
-    })
+        let matched = 0.8 / (Z0 * model.grid.spacing[axis] * (eps_r * mu_r).sqrt());
+        *slab = Slab::new(&model.absorbing_profile, cells, matched, model.time_step())?;
+    }
+    Ok(slabs)
 }
 
 /// The axis with an index.

@@ -58,6 +58,7 @@ impl Turn {
             order: model.order,
             time_window: model.time_window,
             pml_cells: model.pml_cells.map(sides),
+            absorbing_profile: model.absorbing_profile.clone(),
             threads: model.threads,
             materials: model.materials.clone(),
             dispersive_averaging: model.dispersive_averaging,

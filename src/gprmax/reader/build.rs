@@ -71,7 +71,8 @@ fn read_whole(path: &Path, text: &str) -> Result<Input, InFileError> {
         .map(|line| Note { line, text: "ignored, as gprMax does: a command must start in the first column".into() })
         .collect();
     // gprMax builds materials, then their poles, waveforms, sources and receivers, then objects, each in file order.
-    let passes: [&[&str]; 8] = [
+    let passes: [&[&str]; 9] = [
+        &["pml_cfs"],
         &["material"],
         &["add_dispersion_debye"],
         &["add_dispersion_lorentz"],

@@ -5,6 +5,7 @@
 //! `#dx_dy_dz` and `#time_window`, and commands other than objects may stand in any order. What the embedded solver cannot
 //! do is an error that names the command; what does not change a trace becomes a [`Note`]. Nothing is dropped in silence.
 
+mod boundary;
 mod build;
 mod commands;
 mod directives;

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::super::geometry::{GeometryError, read_voxels};
+use super::boundary::stretch;
 use super::build::Note;
 use super::dispersion::dispersion;
 use super::error::Problem;
@@ -23,6 +24,7 @@ pub(super) fn apply(
     match command.name {
         "material" => material(model, command),
         "add_dispersion_debye" | "add_dispersion_lorentz" | "add_dispersion_drude" => dispersion(model, command, notes),
+        "pml_cfs" => stretch(model, command),
         "waveform" => sources::waveform(model, command),
         "excitation_file" => excitation_file(model, path, command),
         "hertzian_dipole" | "magnetic_dipole" | "voltage_source" => sources::source(model, command),

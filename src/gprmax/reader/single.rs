@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::boundary::formulation;
 use super::error::{InFileError, Problem};
 use super::lines::Command;
 use super::values::Parameters;
@@ -61,6 +62,9 @@ pub(super) fn start(path: &Path, commands: &[Command<'_>], order: Order) -> Resu
     }
     if let Some(command) = find("rx_steps") {
         model.receiver_steps = steps(command).map_err(at(command))?;
+    }
+    if let Some(command) = find("pml_formulation") {
+        model.absorbing_profile.formulation = formulation(command).map_err(at(command))?;
     }
     match find("pml_cells") {
         Some(command) => model.pml_cells = Some(pml_cells(command, &grid).map_err(at(command))?),

@@ -12,7 +12,10 @@ use super::number::{exponent, number};
 use super::pulse_files::{PulseFiles, sampled};
 use super::voxel_files::{VoxelFiles, command_safe};
 use crate::files::write_bytes;
-use crate::model::{Beyond, Material, MaterialId, Model, Object, Order, Resonance, Source, TimeWindow, VoltageSource};
+use crate::model::{
+    Beyond, Formulation, Grading, Material, MaterialId, Model, Object, Order, Resonance, Source, Stretch, TimeWindow,
+    VoltageSource,
+};
 
 /// The template that is built in.
 pub const DEFAULT_TEMPLATE: &str = include_str!("../../../templates/model.in");
@@ -20,7 +23,7 @@ pub const DEFAULT_TEMPLATE: &str = include_str!("../../../templates/model.in");
 /// How to write an input file.
 ///
 /// A template is one of minijinja (Jinja2). It sees texts `generator`, `title`, `domain_mode`, `time_window`, `time_step`,
-/// `stability_factor`, `threads`; lists `domain`, `spacing`, `cells`, `pml_cells`; the number `iterations`; `materials` (each
+/// `stability_factor`, `threads`; lists `domain`, `spacing`, `cells`, `pml_cells`, `pml_cfs` (finished); the text `pml_formulation`; the number `iterations`; `materials` (each
 /// `builtin`, `id`, `eps_r`, `sigma`, `mu_r`, `sigma_magnetic`, `poles` with `delta_eps`, `tau`, `resonance`, `resonances`), the flag
 /// `dispersive_averaging`, `waveforms` (`kind`, `amplitude`,
 /// `frequency`, `id`; `file`, `between`, `beyond` of pulses given as samples), `sources` (`command`, `polarisation`, `position`, `resistance`,
@@ -48,6 +51,8 @@ struct Page {
     iterations: usize,
     stability_factor: String,
     pml_cells: Vec<usize>,
+    pml_formulation: &'static str,
+    pml_cfs: Vec<String>,
     threads: String,
     materials: Vec<MaterialLine>,
     dispersive_averaging: bool,
@@ -63,6 +68,8 @@ struct Page {
 
 #[derive(Debug, Serialize)]
 struct MaterialLine {
+    /// Free space, which needs no `#material` and stands here for its poles.
+    builtin: bool,
     id: String,
     eps_r: String,
     sigma: String,
@@ -187,6 +194,11 @@ fn page(model: &Model, voxels: &VoxelFiles<'_>, pulses: &PulseFiles<'_>) -> Resu
         iterations: model.iterations(),
         stability_factor: number(model.stability_factor),
         pml_cells: model.pml_cells.map_or(vec![], Vec::from),
+        pml_formulation: match model.absorbing_profile.formulation {
+            Formulation::Recursive => "",
+            multipole => multipole.name(),
+        },
+        pml_cfs: model.absorbing_profile.stretches.iter().map(stretch).collect(),
         threads: model.threads.map_or(String::new(), |count| count.to_string()),
         materials: materials(model, voxels),
         dispersive_averaging: model.dispersive_averaging,
@@ -224,7 +236,8 @@ fn steps(steps: [f64; 3]) -> Vec<String> {
 }
 
 fn materials(model: &Model, voxels: &VoxelFiles<'_>) -> Vec<MaterialLine> {
-    let line = |m: &Material| MaterialLine {
+    let line = |(index, m): (usize, &Material)| MaterialLine {
+        builtin: index == MaterialId::FREE_SPACE.index(),
         id: m.id.clone(),
         eps_r: number(m.eps_r),
         sigma: number(m.sigma),
@@ -238,8 +251,20 @@ fn materials(model: &Model, voxels: &VoxelFiles<'_>) -> Vec<MaterialLine> {
         },
         resonances: m.resonances.iter().map(resonance).collect(),
     };
-    let listed = |index: usize| index > MaterialId::FREE_SPACE.index() && !voxels.only_in_voxels(index);
-    model.materials.iter().enumerate().filter(|(index, _)| listed(*index)).map(|(_, m)| line(m)).collect()
+    let listed = |(index, m): &(usize, &Material)| {
+        let own = *index > MaterialId::FREE_SPACE.index() && !voxels.only_in_voxels(*index);
+        own || (*index == MaterialId::FREE_SPACE.index() && m.is_dispersive())
+    };
+    model.materials.iter().enumerate().filter(listed).map(line).collect()
+}
+
+fn stretch(stretch: &Stretch) -> String {
+    let words = |grading: &Grading| {
+        let direction = if grading.reverse { "reverse" } else { "forward" };
+        let max = grading.max.map_or("None".into(), number);
+        format!("{} {direction} {} {max}", Grading::ORDERS[usize::from(grading.order.min(8))], number(grading.min))
+    };
+    [stretch.alpha, stretch.kappa, stretch.sigma].iter().map(words).collect::<Vec<_>>().join(" ")
 }
 
 fn resonance(resonance: &Resonance) -> String {

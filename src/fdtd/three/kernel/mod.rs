@@ -7,6 +7,9 @@ mod absorb;
 mod relax;
 mod update;
 
-pub use absorb::{ColumnProfile, RowProfile, absorb_columns, absorb_columns_scaled, absorb_row, absorb_row_scaled};
+pub use absorb::{
+    ColumnFilter, ColumnProfile, RowFilter, RowProfile, absorb_columns, absorb_columns_scaled, absorb_columns_twice,
+    absorb_row, absorb_row_scaled, absorb_row_twice,
+};
 pub use relax::{Pole, Ringing, relax};
 pub use update::{EdgeRow, add_curl, add_curl_lossy, add_h, add_h_magnetic};
