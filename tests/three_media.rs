@@ -32,8 +32,7 @@ fn transverse(material: Material, steps: usize) -> Model {
     model.grid.cells = [24, 26, 2];
     model.transverse_electric = Some(Axis::Z);
     model.pml_cells = Some([5, 5, 0, 5, 5, 0]);
-    let Source::HertzianDipole(dipole) = &mut model.sources[0];
-    dipole.position = [0.024, 0.034, 0.002];
+    *model.sources[0].position_mut() = [0.024, 0.034, 0.002];
     model.receivers[0].position = [0.028, 0.038, 0.002];
     model.receivers[1].position = [0.028, 0.02, 0.002];
     let Object::Box { upper, .. } = &mut model.objects[0] else { panic!("a box") };
@@ -72,8 +71,8 @@ fn poles_without_strength_are_absent_to_the_bit() {
     ];
     for scene in [scene, transverse] {
         assert_eq!(bits(&scene(with(none.clone()), 150)), bits(&scene(with(vec![]), 150)));
-        assert!(moved(&scene(with(vec![LORENTZ]), 150), &scene(with(vec![]), 150)) > 1e-2);
-        assert!(moved(&scene(with(vec![DRUDE]), 150), &scene(with(vec![]), 150)) > 1e-2);
+        assert!(moved(&scene(with(vec![LORENTZ]), 500), &scene(with(vec![]), 500)) > 1e-3);
+        assert!(moved(&scene(with(vec![DRUDE]), 500), &scene(with(vec![]), 500)) > 1e-3);
     }
 }
 
@@ -81,7 +80,7 @@ fn poles_without_strength_are_absent_to_the_bit() {
 #[test]
 fn dispersive_averaging_acts_between_materials_only() {
     let averaged = |averaged: bool, whole: bool| {
-        let mut model = scene(with(vec![LORENTZ]), 150);
+        let mut model = scene(with(vec![LORENTZ]), 500);
         model.materials[2].averagable = true;
         model.dispersive_averaging = averaged;
         if whole {
@@ -91,7 +90,7 @@ fn dispersive_averaging_acts_between_materials_only() {
         model
     };
     assert_eq!(bits(&averaged(true, true)), bits(&averaged(false, true)));
-    assert!(moved(&averaged(true, false), &averaged(false, false)) > 1e-2);
+    assert!(moved(&averaged(true, false), &averaged(false, false)) > 1e-3);
 }
 
 /// A plane of TE holds the same fields wherever its invariant axis lies: turned in space, to the bit.
@@ -103,8 +102,9 @@ fn transverse_models_do_not_depend_on_their_axis() {
     along_x.grid.cells = [2, 24, 26];
     along_x.transverse_electric = Some(Axis::X);
     along_x.pml_cells = Some([0, 5, 5, 0, 5, 5]);
-    let Source::HertzianDipole(dipole) = &mut along_x.sources[0];
-    (dipole.position, dipole.polarisation) = (turned(dipole.position), Axis::Y);
+    let position = turned(along_x.sources[0].position());
+    *along_x.sources[0].position_mut() = position;
+    *along_x.sources[0].polarisation_mut() = Axis::Y;
     along_x.receivers.iter_mut().for_each(|receiver| receiver.position = turned(receiver.position));
     let Object::Box { upper, .. } = &mut along_x.objects[0] else { panic!("a box") };
     *upper = turned(*upper);
@@ -122,7 +122,7 @@ fn transverse_models_do_not_depend_on_their_axis() {
     }
 }
 
-/// Poles far faster than the step, resonances beyond what the step can follow, strong ones in the middle of the pulse, hardly
+/// Poles far faster than the step, strong resonances in the middle of the pulse, hardly
 /// damped ones: 10⁴ steps in a closed box stay below the first 500.
 #[test]
 fn hard_poles_stay_bounded_over_ten_thousand_steps() {
@@ -134,7 +134,6 @@ fn hard_poles_stay_bounded_over_ten_thousand_steps() {
     let lorentz = |delta_eps, frequency, damping| with(vec![Resonance::Lorentz { delta_eps, frequency, damping }]);
     let cases = [
         ("stiff", stiff),
-        ("beyond the step", lorentz(1.0, 5e13, 1e12)),
         ("strong", lorentz(10.0, 2e9, 1e8)),
         ("hardly damped", lorentz(1.0, 2e9, 1e3)),
         ("nearly critical", lorentz(3.0, 1e9, 6.28e9)),
@@ -148,8 +147,7 @@ fn hard_poles_stay_bounded_over_ten_thousand_steps() {
             model.waveforms[0].frequency = 1e9;
             if model.transverse_electric.is_none() {
                 model.grid.cells = [15, 14, 18];
-                let Source::HertzianDipole(dipole) = &mut model.sources[0];
-                dipole.position = [0.014, 0.014, 0.03];
+                *model.sources[0].position_mut() = [0.014, 0.014, 0.03];
                 model.receivers.truncate(1);
                 model.receivers[0].position = [0.018, 0.018, 0.03];
                 let Object::Box { upper, .. } = &mut model.objects[0] else { panic!("a box") };
@@ -177,6 +175,11 @@ fn models_that_cannot_be_are_refused_by_name() {
     assert!(
         message(&|_| (), scene(overdamped, 9)).starts_with("`stone` has a Lorentz pole of 1000000000 Hz damped by")
     );
+    let fast = with(vec![Resonance::Lorentz { delta_eps: 1.0, frequency: 1e11, damping: 1e10 }]);
+    assert!(
+        message(&|_| (), scene(fast, 9))
+            .starts_with("`stone` has a Lorentz pole of 100000000000 Hz, which turns by 2.4")
+    );
     let still = with(vec![Resonance::Drude { frequency: 1e9, collisions: 0.0 }]);
     assert!(message(&|_| (), scene(still, 9)).starts_with("`stone` has a collision rate in 1/s of 0, but at least"));
     let thick = |model: &mut Model| model.grid.cells[2] = 3;
@@ -185,16 +188,14 @@ fn models_that_cannot_be_are_refused_by_name() {
         "a TE model across z has two cells along that axis and more than one along the others, but this one has 24 x 26 x 3"
     );
     let along = |model: &mut Model| {
-        let Source::HertzianDipole(dipole) = &mut model.sources[0];
-        dipole.polarisation = Axis::Z;
+        *model.sources[0].polarisation_mut() = Axis::Z;
     };
     assert_eq!(
         message(&along, transverse(with(vec![]), 9)),
         "source 1 drives a field along z, which a two-dimensional model (TE across z) does not hold"
     );
     let low = |model: &mut Model| {
-        let Source::HertzianDipole(dipole) = &mut model.sources[0];
-        dipole.position[2] = 0.0;
+        model.sources[0].position_mut()[2] = 0.0;
     };
     assert!(message(&low, transverse(with(vec![]), 9)).starts_with("source 1 lies at node 0 along z, but the fields"));
 }
@@ -211,7 +212,7 @@ fn a_stretch_that_does_nothing_is_absent_to_the_bit() {
         ("alpha", vec![Stretch { alpha: Grading::constant(0.05), ..base }]),
         ("kappa", vec![Stretch { kappa: Grading { order: 2, reverse: false, min: 1.0, max: Some(4.0) }, ..base }]),
     ];
-    for model in [scene(with(vec![]), 150), transverse(with(vec![]), 150)] {
+    for model in [scene(with(vec![]), 500), transverse(with(vec![]), 500)] {
         let plain = bits(&model);
         assert_eq!(bits(&stretched(&model, Formulation::Recursive, vec![base])), plain);
         assert_eq!(bits(&stretched(&model, Formulation::Multipole, vec![base])), plain);

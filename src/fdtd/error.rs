@@ -64,6 +64,21 @@ pub enum FdtdError {
         /// Its damping, 1/s.
         damping: f64,
     },
+    /// A Lorentz pole that the time step cannot follow.
+    #[error(
+        "`{material}` has a Lorentz pole of {frequency} Hz, which turns by {turn:.2} rad in a time step, more than the {most} \
+         that the scheme can follow\n\nhint: smaller cells, or the pole's strength as plain permittivity"
+    )]
+    ResonanceTooFast {
+        /// Identifier of the material.
+        material: String,
+        /// Frequency of the resonance, Hz.
+        frequency: f64,
+        /// Its angle in a time step, rad.
+        turn: f64,
+        /// The largest angle.
+        most: f64,
+    },
     /// A material with a value that nature does not have.
     #[error("`{material}` has a {quantity} of {value}, but at least {least} is needed")]
     Material {

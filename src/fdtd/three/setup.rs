@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::super::FdtdError;
-use super::super::coefficients::{Edge, check_electric, edge_of};
+use super::super::coefficients::{Edge, check_electric, check_resonances, edge_of};
 use super::super::setup::node_in_grid;
 use super::super::slab::Slab;
 use super::drive::{Drive, Load, drives, loads};
@@ -71,6 +71,7 @@ impl<'a> Setup3<'a> {
         let present = painted.cells_per_material(model.materials.len());
         for (material, _) in model.materials.iter().zip(present).filter(|(_, cells)| *cells > 0) {
             check_electric(material)?;
+            check_resonances(material, model.time_step())?;
         }
         let mut edges: Vec<Edge> = painted.palette.iter().map(|entry| edge_of(model, entry)).collect();
         let loads = loads(model, &painted, &mut edges)?;
