@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::Axis;
 use super::material::MaterialId;
 
 /// Something that fills cells. Coordinates in metres, as the user wrote them: painting snaps them to the grid.
@@ -42,6 +43,82 @@ pub enum Object {
         /// Whether the edges on its surface take the mean of the materials around them.
         averaging: bool,
     },
+    /// An ellipsoid with half-axes along x, y, z: `#ellipsoid`.
+    Ellipsoid {
+        /// Centre, m.
+        centre: [f64; 3],
+        /// Half-axes, m. Not snapped to the grid.
+        radii: [f64; 3],
+        /// What it is made of.
+        material: MaterialId,
+        /// Whether the edges on its surface take the mean of the materials around them.
+        averaging: bool,
+    },
+    /// A circular cone or its stump: `#cone`.
+    Cone {
+        /// Centre of the first face, m.
+        start: [f64; 3],
+        /// Centre of the second face, m.
+        end: [f64; 3],
+        /// Radius of the first and of the second face, m. Not snapped to the grid.
+        radii: [f64; 2],
+        /// What it is made of.
+        material: MaterialId,
+        /// Whether the edges on its surface take the mean of the materials around them.
+        averaging: bool,
+    },
+    /// A sector of a circular cylinder along an axis: `#cylindrical_sector`. One that is less than half a cell thick is a
+    /// sheet on one plane of nodes, which claims its edges.
+    Sector {
+        /// Axis of the cylinder.
+        axis: Axis,
+        /// Where the axis stands along the two other axes, m.
+        centre: [f64; 2],
+        /// Lower and upper end, m.
+        extent: [f64; 2],
+        /// Radius, m. Not snapped to the grid.
+        radius: f64,
+        /// Angle at which it begins, from the first of the other axes towards the second, degrees.
+        start: f64,
+        /// Angle that it takes, degrees.
+        sweep: f64,
+        /// What it is made of.
+        material: MaterialId,
+        /// Whether the edges on its surface take the mean of the materials around them.
+        averaging: bool,
+    },
+    /// A prism on a triangle across an axis: `#triangle`. One that is less than half a cell thick is a sheet on one plane of
+    /// nodes, which claims its edges.
+    Triangle {
+        /// Corners, m.
+        corners: [[f64; 3]; 3],
+        /// Axis along which all corners have the same coordinate.
+        axis: Axis,
+        /// How far the prism reaches from the corners towards larger coordinates, m.
+        thickness: f64,
+        /// What it is made of.
+        material: MaterialId,
+        /// Whether the edges on its surface take the mean of the materials around them.
+        averaging: bool,
+    },
+    /// A rectangle without thickness, which claims the edges that lie in it: `#plate`.
+    Plate {
+        /// Corner with the smallest coordinates, m; along one axis the same as in `upper`.
+        lower: [f64; 3],
+        /// Corner with the largest coordinates, m.
+        upper: [f64; 3],
+        /// What it is made of.
+        material: MaterialId,
+    },
+    /// A line of edges along an axis, which it claims: `#edge`.
+    Edge {
+        /// End with the smaller coordinate, m.
+        lower: [f64; 3],
+        /// End with the larger coordinate, m.
+        upper: [f64; 3],
+        /// What it is made of.
+        material: MaterialId,
+    },
     /// A block of cells with their materials: `#geometry_objects_read`.
     Voxels(Voxels),
 }
@@ -50,9 +127,15 @@ impl Object {
     /// Whether any of it is made of a material.
     pub fn holds(&self, id: MaterialId) -> bool {
         match self {
-            Self::Box { material, .. } | Self::Cylinder { material, .. } | Self::Sphere { material, .. } => {
-                *material == id
-            }
+            Self::Box { material, .. }
+            | Self::Cylinder { material, .. }
+            | Self::Sphere { material, .. }
+            | Self::Ellipsoid { material, .. }
+            | Self::Cone { material, .. }
+            | Self::Sector { material, .. }
+            | Self::Triangle { material, .. }
+            | Self::Plate { material, .. }
+            | Self::Edge { material, .. } => *material == id,
             Self::Voxels(block) => block.cells.contains(&Some(id)),
         }
     }

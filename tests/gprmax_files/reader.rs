@@ -163,8 +163,8 @@ fn errors_name_the_line_and_what_to_do() {
         "FILE line 4: `#cilinder` is not a gprMax command\n\nhint: did you mean `#cylinder`?"
     );
     assert_eq!(
-        error("#ellipsoid: 0.1 0.1 0.1 0.05 0.05 0.05 stone"),
-        "FILE line 4: `#ellipsoid` is not supported by the embedded solver\n\nhint: `--solver gprmax` runs the file in gprMax itself"
+        error("#fractal_box: 0.1 0.1 0.1 0.05 0.05 0.05 stone"),
+        "FILE line 4: `#fractal_box` is not supported by the embedded solver\n\nhint: `--solver gprmax` runs the file in gprMax itself"
     );
     assert_eq!(error("#domain: 1 1 1"), "FILE line 4: `#domain` stands for the second time, first in line 1");
     assert_eq!(
@@ -340,5 +340,32 @@ proptest! {
             }
         }
         let _ = read(&String::from_utf8_lossy(&bytes));
+    }
+}
+
+/// What gprMax 4.0.1 refuses of triangles, cones, sectors, plates and edges (each run through it), and the material of two
+/// names that a plate may have there.
+#[test]
+fn shapes_that_cannot_be_are_refused_by_line() {
+    for (line, said) in [
+        ("#triangle: 0 0 0 0.1 0 0 0 0.1 0 -0.002 pec", "the thickness"),
+        ("#triangle: 0 0 0 0.1 0.1 0.002 0 0.1 0 0 pec", "a triangle that lies across no axis"),
+        ("#triangle: 0 0 0 0.1 0 0 0 9 0 0.002 pec", "corner of the triangle"),
+        ("#ellipsoid: 0.1 0.1 0 0.1 0 0.1 pec", "a half-axis"),
+        ("#cone: 0.1 0.1 0 0.1 0.1 0.002 0.1 0.05 pec", "a cone in two dimensions"),
+        ("#cylindrical_sector: w 0.1 0.1 0 0.002 0.05 0 90 pec", "an axis"),
+        ("#cylindrical_sector: z 0.1 0.1 0 0.002 0.05 360 90 pec", "the starting angle"),
+        ("#cylindrical_sector: z 0.1 0.1 0 0.002 0 0 90 pec", "the radius"),
+        ("#plate: 0.1 0.1 0 0.1 0.1 0.002 pec", "the number of axes along which it has no extent"),
+        ("#plate: 0.1 0.1 0 0.2 0.2 0.002 pec", "the number of axes along which it has no extent"),
+        ("#plate: 0.1 0.2 0 0.1 0.1 0.002 pec", "0.2 m"),
+        ("#plate: 0.1 0.1 0 0.1 0.2 0.002 pec free_space", "a direction-dependent material"),
+        ("#edge: 0.1 0.1 0 0.1 0.1 0 pec", "the number of axes along which it has an extent"),
+        ("#edge: 0.1 0.1 0 0.2 0.2 0 pec", "the number of axes along which it has an extent"),
+        ("#edge: 0.1 0.1 0 0.2 0.1 0 nothing", "nothing"),
+        ("#edge: 0.1 0.1 0 0.2 0.1 pec", "parameters"),
+    ] {
+        let message = error(line);
+        assert!(message.contains("line 4") && message.contains(said), "{line}: {message}");
     }
 }

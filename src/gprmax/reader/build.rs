@@ -80,7 +80,18 @@ fn read_whole(path: &Path, text: &str) -> Result<Input, InFileError> {
         &["waveform", "excitation_file"],
         &["hertzian_dipole", "magnetic_dipole", "voltage_source"],
         &["rx", "rx_array"],
-        &["box", "cylinder", "sphere", "geometry_objects_read"],
+        &[
+            "box",
+            "cylinder",
+            "sphere",
+            "triangle",
+            "ellipsoid",
+            "cone",
+            "cylindrical_sector",
+            "plate",
+            "edge",
+            "geometry_objects_read",
+        ],
     ];
     for pass in passes {
         for command in commands.iter().filter(|command| pass.contains(&command.name)) {

@@ -9,6 +9,7 @@ use super::dispersion::dispersion;
 use super::error::Problem;
 use super::excitation::excitation_file;
 use super::lines::Command;
+use super::shapes;
 use super::sources;
 use super::values::Parameters;
 use crate::files::nearest_name;
@@ -32,6 +33,12 @@ pub(super) fn apply(
         "rx_array" => receiver_array(model, command),
         "box" => cuboid(model, command),
         "sphere" => sphere(model, command),
+        "triangle" => shapes::triangle(model, command),
+        "ellipsoid" => shapes::ellipsoid(model, command),
+        "cone" => shapes::cone(model, command),
+        "cylindrical_sector" => shapes::sector(model, command),
+        "plate" => shapes::plate(model, command),
+        "edge" => shapes::edge(model, command),
         "cylinder" => cylinder(model, command),
         _ => geometry_objects_read(model, path, command),
     }
@@ -169,7 +176,7 @@ fn sphere(model: &mut Model, command: &Command<'_>) -> Result<(), Problem> {
 }
 
 /// The material of an object and its averaging flag, from parameter `first` on; a tag may stand behind the flag.
-fn stuff(model: &Model, p: &Parameters<'_>, first: usize) -> Result<(MaterialId, bool), Problem> {
+pub(super) fn stuff(model: &Model, p: &Parameters<'_>, first: usize) -> Result<(MaterialId, bool), Problem> {
     let is_flag = |index: usize| p.word(index).is_ok_and(|word| matches!(word, "y" | "Y" | "n" | "N"));
     match p.len() - first {
         1 => Ok((material_id(model, p, p.word(first)?)?, true)),

@@ -318,6 +318,10 @@ fn object_line(
             if averaging && (material.averagable || material.is_pec() || material.is_dispersive()) { "y" } else { "n" };
         Ok::<_, WriteError>(format!("{} {flag}", material.id))
     };
+    let name = |id: &MaterialId| match model.materials.get(id.index()) {
+        Some(material) => Ok(&material.id),
+        None => Err(WriteError::Dangling { what: "material", index: id.index() }),
+    };
     match object {
         Object::Box { lower, upper, material, averaging } => {
             Ok(Some(format!("#box: {} {} {}", point(lower), point(upper), stuff(material, *averaging)?)))
@@ -329,6 +333,29 @@ fn object_line(
         Object::Sphere { centre, radius, material, averaging } => {
             let stuff = stuff(material, *averaging)?;
             Ok(Some(format!("#sphere: {} {} {stuff}", point(centre), number(*radius))))
+        }
+        Object::Ellipsoid { centre, radii, material, averaging } => {
+            let stuff = stuff(material, *averaging)?;
+            Ok(Some(format!("#ellipsoid: {} {} {stuff}", point(centre), point(radii))))
+        }
+        Object::Cone { start, end, radii: [first, second], material, averaging } => {
+            let (stuff, radii) = (stuff(material, *averaging)?, format!("{} {}", number(*first), number(*second)));
+            Ok(Some(format!("#cone: {} {} {radii} {stuff}", point(start), point(end))))
+        }
+        Object::Sector { axis, centre, extent, radius, start, sweep, material, averaging } => {
+            let [a, b] = *centre;
+            let numbers = [a, b, extent[0], extent[1], *radius, *start, *sweep].map(number).join(" ");
+            Ok(Some(format!("#cylindrical_sector: {} {numbers} {}", axis.name(), stuff(material, *averaging)?)))
+        }
+        Object::Triangle { corners, thickness, material, averaging, .. } => {
+            let corners = corners.each_ref().map(point).join(" ");
+            Ok(Some(format!("#triangle: {corners} {} {}", number(*thickness), stuff(material, *averaging)?)))
+        }
+        Object::Plate { lower, upper, material } => {
+            Ok(Some(format!("#plate: {} {} {}", point(lower), point(upper), name(material)?)))
+        }
+        Object::Edge { lower, upper, material } => {
+            Ok(Some(format!("#edge: {} {} {}", point(lower), point(upper), name(material)?)))
         }
         Object::Voxels(block) => Ok(voxels.line(index, block)),
     }

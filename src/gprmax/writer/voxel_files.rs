@@ -37,7 +37,15 @@ impl<'a> VoxelFiles<'a> {
         };
         for (index, object) in model.objects.iter().enumerate() {
             match object {
-                Object::Box { material, .. } | Object::Cylinder { material, .. } | Object::Sphere { material, .. } => {
+                Object::Box { material, .. }
+                | Object::Cylinder { material, .. }
+                | Object::Sphere { material, .. }
+                | Object::Ellipsoid { material, .. }
+                | Object::Cone { material, .. }
+                | Object::Sector { material, .. }
+                | Object::Triangle { material, .. }
+                | Object::Plate { material, .. }
+                | Object::Edge { material, .. } => {
                     files.in_commands.insert(*material);
                 }
                 Object::Voxels(block) => {

@@ -152,4 +152,37 @@ impl Claims {
             fill(&mut self.across_x[side], j, &run);
         }
     }
+
+    /// Claims one edge along an axis of the layout, from a node; the plane of cells `i` keeps what concerns it.
+    pub fn claim_edge(&mut self, i: usize, axis: usize, [a, j, k]: [usize; 3], claim: Claim) {
+        if !self.layout.wanted(axis) {
+            return;
+        }
+        self.begin();
+        let [_, rows, cells] = self.layout.n;
+        // The plane lies behind the node (side 0) or before it (side 1).
+        let side = a - i;
+        let place = j * (cells + 1) + k;
+        match axis {
+            0 => self.x[place] = claim,
+            _ => self.yz[axis - 1][side][place] = claim,
+        }
+        let beside = |node: usize, of: usize| {
+            let before = (axis != of).then(|| (node.wrapping_sub(1), 1));
+            std::iter::once((node, 0)).chain(before)
+        };
+        for (row, high_j) in beside(j, 1) {
+            for (cell, high_k) in beside(k, 2) {
+                if row < rows && cell < cells {
+                    let high = match axis {
+                        0 => [high_j, high_k],
+                        1 => [side, high_k],
+                        _ => [side, high_j],
+                    };
+                    self.rows[row] = true;
+                    self.held[row * cells + cell] |= edge_flag(axis, high);
+                }
+            }
+        }
+    }
 }
