@@ -140,25 +140,25 @@ fn agree(name: &str, model: &Model, theirs: &Traces) -> Result<Agreement, CliErr
     })
 }
 
-/// A bound whose last digits do not depend on rounding, which another mathematical library may do otherwise.
-fn power_of_ten_above(value: f64) -> String {
-    format!("< 1e{}", (2.0 * value).log10().ceil())
-}
-
 /// Every case in a row of its own; in Markdown, which is for the README, the worst of each kind.
 fn report(found: &[Agreement], summary: bool) -> Result<CaseReport, CliError> {
     let title = "gprmax: the built-in solver against gprMax 4.0.1 in double precision, all components and receivers";
     let (single, double) = ("single (≤ 2e-5, 3-D ≤ 1e-3)", "double (≤ 1e-10)");
     let verdict = |holds| if holds { "agrees" } else { "DIFFERS" };
     let table = if summary {
-        let mut table = Report::new(title, ["cases", single, double, "verdict"]);
+        let mut table = Report::new(title, ["cases", "single precision", "double precision", "verdict"]);
         let (two, three): (Vec<&Agreement>, Vec<&Agreement>) = found.iter().partition(|case| case.cells[2] == 1);
-        for (name, cases) in [("two dimensions", two), ("three dimensions", three)] {
+        for (name, cases, limit) in
+            [("two dimensions", two, SINGLE_LIMIT), ("three dimensions", three, SINGLE_LIMIT_3D)]
+        {
             let worst = |of: fn(&Agreement) -> f64| cases.iter().map(|case| of(case)).fold(0.0, f64::max);
+            // The figures themselves end in rounding, which another mathematical library may do otherwise.
+            let shown =
+                |worst: f64, limit| if worst <= limit { format!("≤ {limit:e}") } else { format!("{worst:.1e}") };
             table.row([
                 name.to_owned(),
-                power_of_ten_above(worst(|case| case.single)),
-                power_of_ten_above(worst(|case| case.double)),
+                shown(worst(|case| case.single), limit),
+                shown(worst(|case| case.double), DOUBLE_LIMIT),
                 verdict(cases.iter().all(|case| case.holds())).into(),
             ]);
         }
