@@ -343,8 +343,8 @@ proptest! {
     }
 }
 
-/// What gprMax 4.0.1 refuses of triangles, cones, sectors, plates and edges (each run through it), and the material of two
-/// names that a plate may have there.
+/// Shapes that cannot be. gprMax 4.0.1 was seen to refuse the negative thickness, the cone in a plane, and the plates and
+/// edges with wrong or turned extents; a plate may have two materials there, but not here.
 #[test]
 fn shapes_that_cannot_be_are_refused_by_line() {
     for (line, said) in [
