@@ -27,7 +27,7 @@
 //! | [`trace`] | A-scans and sets of traces | units |
 //! | [`geometry`] | discs, their neighbours, areas | units |
 //! | [`material`] | dielectrics, mixing rules, named materials, fouling indices | units, files |
-//! | [`model`] | what a solver needs; painting objects into cells; effects | units, material |
+//! | [`model`] | what a solver needs; painting objects into cells; effects | units, geometry, material |
 //! | [`packing`] | grading in, particles out | units, geometry, files |
 //! | [`scene`] | layers, packing, materials, antenna: checked once | units, files, geometry, material, model, packing |
 //! | [`raster`] | from a scene to a model | units, geometry, material, scene, model |

@@ -10,7 +10,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("trace", &["units"]),
     ("geometry", &["units"]),
     ("material", &["units", "files"]),
-    ("model", &["units", "material"]),
+    ("model", &["units", "geometry", "material"]),
     ("packing", &["units", "geometry", "files"]),
     ("scene", &["units", "files", "geometry", "material", "model", "packing"]),
     ("raster", &["units", "geometry", "material", "scene", "model"]),

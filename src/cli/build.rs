@@ -37,8 +37,8 @@ pub struct BuildArgs {
     /// Build NUM siblings with seeds counted from --seed, each in its own folder below --out.
     #[arg(long, value_name = "NUM", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub realisations: u32,
-    /// Choose the cheapest cell size and smoothing whose error the cost table gives as at most this (see `cost fdtd2d`).
-    #[arg(long, value_name = "SHARE", conflicts_with_all = ["cell", "smoothing"])]
+    /// Choose the cheapest cell size, smoothing and order whose error the cost table gives as at most this (see `cost fdtd2d`).
+    #[arg(long, value_name = "SHARE", conflicts_with_all = ["cell", "smoothing", "order"])]
     pub tolerance: Option<Share>,
     /// Template for the gprMax input in place of the built-in one.
     #[arg(long, value_name = "FILE")]
@@ -61,6 +61,7 @@ pub fn run(args: &BuildArgs) -> Result<(), CliError> {
         let choice = cost_choice::choose(tolerance, spec.antenna.frequency)?;
         eprintln!("{}", choice.sentence());
         (spec.grid.cell, spec.grid.smoothing) = (choice.cell, choice.smoothing);
+        spec.grid.order = choice.order;
     }
     let template = args
         .template

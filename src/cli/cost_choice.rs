@@ -2,6 +2,7 @@
 
 use crate::cli::error::{CliError, Kind};
 use crate::gprmax;
+use crate::model::Order;
 use crate::scene::Smoothing;
 use crate::study::CostTable;
 use crate::units::{Hertz, Metres, Share};
@@ -18,6 +19,8 @@ pub struct Choice {
     pub cell: Metres,
     /// Smoothing.
     pub smoothing: Smoothing,
+    /// Order of the differences.
+    pub order: Order,
     error: f64,
     tolerance: Share,
     from: &'static str,
@@ -30,11 +33,13 @@ impl Choice {
             Smoothing::None => "none",
             Smoothing::Edges => "edges",
             Smoothing::Area => "area",
+            Smoothing::Shapes => "shapes",
         };
         format!(
-            "tolerance {}: cells of {} with smoothing `{smoothing}` are the cheapest that keep it ({:.1} % by {})",
+            "tolerance {}: cells of {} with smoothing `{smoothing}` and order {} are the cheapest that keep it ({:.1} % by {})",
             self.tolerance,
             self.cell.in_unit("mm"),
+            self.order,
             100.0 * self.error,
             self.from
         )
@@ -76,5 +81,12 @@ pub fn choose(tolerance: Share, frequency: Hertz) -> Result<Choice, CliError> {
     // Error goes with cells per wavelength. Rounded down to a tenth of a millimetre below 10 mm.
     let scaled = point.setting.cell.si() * table.frequency / frequency.si();
     let cell = Metres(((scaled * 1e4 + 1e-9).floor() / 1e4).max(1e-4));
-    Ok(Choice { cell, smoothing: point.setting.smoothing, error: point.error, tolerance, from })
+    Ok(Choice {
+        cell,
+        smoothing: point.setting.smoothing,
+        order: point.setting.order,
+        error: point.error,
+        tolerance,
+        from,
+    })
 }

@@ -285,10 +285,8 @@ fn run_fdtd(args: &RunArgs, input: &Path, result: &Path) -> Result<Option<f64>, 
 }
 
 fn run_gprmax(args: &RunArgs, input: &Path, result: &Path) -> Result<Option<f64>, CliError> {
-    let order = args.order.map_or_else(|| gprmax::read_order(input), Ok)?;
-    if order != Order::Second {
-        return Err(gprmax::RunError::Order { order }.into());
-    }
+    let asked = gprmax::read_directives(input)?;
+    gprmax::check_scheme(args.order.unwrap_or(asked.order), asked.averaging)?;
     let solver = gprmax_solver(args.gprmax_python.as_deref(), args.precision, args.threads)?;
     let bar = Bar::new("gprMax");
     let run = solver.run_file(input, result, &|progress| bar.update(progress))?;

@@ -59,7 +59,8 @@ pub struct SceneArgs {
     /// How stones become cells: true centres in a block of cells, or `#cylinder` lines with centres snapped to the grid.
     #[arg(long, value_enum)]
     pub geometry: Option<Geometry>,
-    /// Where materials meet: a staircase, each edge the mean of its four cells, or each cell the mean over its area.
+    /// Where materials meet: a staircase, each edge the mean of its four cells, each cell the mean over its area, or each
+    /// edge the mean over its own square from the true discs.
     #[arg(long, value_enum)]
     pub smoothing: Option<SmoothingFlag>,
     /// Order of the differences in space: 2, as gprMax [default], or 4 (built-in solver only).
@@ -85,6 +86,8 @@ pub enum SmoothingFlag {
     Edges,
     /// Area means in each cell, then edge means.
     Area,
+    /// Each edge the mean over its own square, from the true discs (built-in solver only).
+    Shapes,
 }
 
 impl SceneArgs {
@@ -151,6 +154,7 @@ impl SceneArgs {
                 SmoothingFlag::None => Smoothing::None,
                 SmoothingFlag::Edges => Smoothing::Edges,
                 SmoothingFlag::Area => Smoothing::Area,
+                SmoothingFlag::Shapes => Smoothing::Shapes,
             }),
         );
         Ok(())

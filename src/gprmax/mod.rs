@@ -17,8 +17,9 @@ mod writer;
 pub use geometry::GeometryError;
 pub use install::{InstallError, Interpreter, VersionInfo};
 pub use output::{OutputError, OutputWriteError, read_traces, traces_to_bytes, write_traces};
-pub use program::{GprMax, GprMaxRun, RunError};
+pub use program::{GprMax, GprMaxRun, RunError, check_scheme};
 pub use reader::{
-    COMMANDS, CommandKind, InFileError, Input, Note, Problem, input_files, read_input, read_model, read_order,
+    COMMANDS, CommandKind, Directives, InFileError, Input, Note, Problem, input_files, read_directives, read_input,
+    read_model,
 };
 pub use writer::{DEFAULT_TEMPLATE, InputOptions, WriteError, number, write_input};

@@ -5,6 +5,7 @@
 //! `gprmax`, and both solvers take it. [`paint`] turns the objects into cells and edges by gprMax's rules.
 
 mod absorbing;
+mod averaging;
 mod check;
 mod effects;
 mod grid;
@@ -23,6 +24,7 @@ mod spec;
 mod waveform;
 
 pub use absorbing::{AbsorbingProfile, Formulation, Grading, Stretch};
+pub use averaging::Averaging;
 pub use check::{
     CheckError, LEAST_CELLS_PER_WAVELENGTH, Resolution, WANTED_CELLS_PER_WAVELENGTH, available_memory,
     check_absorbing_cells, check_memory, check_mode, check_recording, check_stability_factor, mebibytes,

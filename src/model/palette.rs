@@ -104,7 +104,8 @@ impl<'a> Palette<'a> {
         self.entries
     }
 
-    fn enter(&mut self, edge: EdgeMaterial) -> u32 {
+    /// The entry with exactly these values.
+    pub(super) fn enter(&mut self, edge: EdgeMaterial) -> u32 {
         let entries = &mut self.entries;
         *self
             .by_value

@@ -1,6 +1,6 @@
 //! The model itself.
 
-use super::{AbsorbingProfile, Axis, Grid, Material, MaterialId, Object, Order, Receiver, Source, Waveform};
+use super::{AbsorbingProfile, Averaging, Axis, Grid, Material, MaterialId, Object, Order, Receiver, Source, Waveform};
 
 /// How long to simulate.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,6 +25,8 @@ pub struct Model {
     pub stability_factor: f64,
     /// Order of the differences in space. It stands here because time step and number of steps follow from it.
     pub order: Order,
+    /// How the edges between materials get their values.
+    pub averaging: Averaging,
     /// How long to simulate.
     pub time_window: TimeWindow,
     /// Absorbing cells at x0, y0, z0, xmax, ymax, zmax; `None` is gprMax's default of 10 on every side of a changing axis.
@@ -60,6 +62,7 @@ impl Model {
             transverse_electric: None,
             stability_factor: 1.0,
             order: Order::Second,
+            averaging: Averaging::Cells,
             time_window,
             pml_cells: None,
             absorbing_profile: AbsorbingProfile::default(),

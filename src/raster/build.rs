@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use crate::geometry::Disc;
 use crate::model::{
-    Axis, DebyePole, Excitation, HertzianDipole, Material, MaterialId, Model, Object, Receiver, Source, TimeWindow,
-    Voxels, Waveform,
+    Averaging, Axis, DebyePole, Excitation, HertzianDipole, Material, MaterialId, Model, Object, Receiver, Source,
+    TimeWindow, Voxels, Waveform,
 };
 use crate::scene::{GeometryKind, Medium, PackingMethod, Scene, Smoothing};
 
@@ -56,6 +56,9 @@ pub fn build_model(scene: &Scene) -> Result<Model, RasterError> {
     }
     let mut model = Model::new(spec.title.clone(), placement.grid, TimeWindow::Seconds(spec.grid.time_window.si()));
     model.order = spec.grid.order;
+    if spec.grid.smoothing == Smoothing::Shapes {
+        model.averaging = Averaging::Shapes;
+    }
     model.pml_cells = Some(placement.absorbing_cells);
     let mut builder = Builder { model, averaging: spec.grid.smoothing != Smoothing::None, known: HashMap::new() };
     builder.tank(scene, &placement);
@@ -153,7 +156,7 @@ impl Builder {
     fn stones(&mut self, scene: &Scene, placement: &Placement) -> Result<(), RasterError> {
         match (scene.spec.grid.geometry, scene.spec.grid.smoothing) {
             (GeometryKind::Cylinders, Smoothing::Area) => return Err(RasterError::AreaNeedsVoxels),
-            (GeometryKind::Cylinders, _) => self.cylinders(scene, placement),
+            (GeometryKind::Cylinders, _) | (_, Smoothing::Shapes) => self.cylinders(scene, placement),
             (GeometryKind::Voxels, smoothing) => self.voxels(scene, placement, smoothing),
         }
         Ok(())

@@ -277,6 +277,8 @@ pub enum Smoothing {
     Edges,
     /// Each cell takes the mean over its area, in 32 steps, and each edge the mean of its cells.
     Area,
+    /// Each edge takes the mean over its own square from the true discs (built-in solver only; stones as `#cylinder` lines).
+    Shapes,
 }
 
 /// Cells, smoothing and time.

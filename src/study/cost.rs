@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use crate::compare;
 use crate::forward::{Forward, ForwardError, OnProgress};
+use crate::model::Order;
 use crate::raster;
 use crate::scene::{Scene, SceneError, SceneSpec, Smoothing, resolve};
 use crate::trace::AScan;
@@ -18,6 +19,9 @@ pub struct CostSetting {
     pub cell: Metres,
     /// What happens where two materials meet.
     pub smoothing: Smoothing,
+    /// Order of the differences in space.
+    #[serde(default)]
+    pub order: Order,
     /// Whether the fields are in double precision.
     pub double_precision: bool,
 }
@@ -54,6 +58,12 @@ pub struct CostTable {
     pub measured_order: f64,
     /// Relative L2 difference of the two finest area-smoothed runs: the scale of the reference's own uncertainty.
     pub finest_difference: f64,
+    /// Order of convergence of the runs of order 4 from the true shapes.
+    #[serde(default)]
+    pub order_of_shapes: f64,
+    /// Relative L2 difference between their limit and the reference: an upper bound of the reference's own error.
+    #[serde(default)]
+    pub limits_differ: f64,
     /// The points.
     pub points: Vec<CostPoint>,
 }
@@ -78,7 +88,7 @@ impl CostScene {
     /// When it cannot be resolved.
     pub fn with(&self, setting: CostSetting) -> Result<Scene, SceneError> {
         let mut spec = self.spec.clone();
-        (spec.grid.cell, spec.grid.smoothing) = (setting.cell, setting.smoothing);
+        (spec.grid.cell, spec.grid.smoothing, spec.grid.order) = (setting.cell, setting.smoothing, setting.order);
         resolve(&spec)
     }
 
@@ -118,10 +128,12 @@ pub enum CostError {
 /// Step of the common time axis on which traces are compared, s: a fiftieth of the shortest period that matters (3 GHz).
 const COMMON_STEP: f64 = 5e-12;
 
-/// Measures the curve over `cells` (each half the one before, coarsest first), every smoothing and every solver.
+/// Measures the curve over `cells` (each half the one before, coarsest first), every smoothing, both orders of differences
+/// and every solver.
 ///
-/// The reference is the limit of the area-smoothed runs in the most precise solver, by Richardson extrapolation of the
-/// traces with the order measured on the three finest cells.
+/// The reference is the limit of the runs of order 2 with area smoothing in the most precise solver, by Richardson
+/// extrapolation of the traces with the order measured on the three finest cells; the limit of those of order 4 from the
+/// true shapes, found in the same way, tells how far it can be trusted.
 ///
 /// # Errors
 /// See [`CostError`].
@@ -135,44 +147,60 @@ pub fn cost_curve(
     if cells.len() < 3 {
         return Err(CostError::TooFewCells { cells: cells.len() });
     }
-    let smoothings = [Smoothing::None, Smoothing::Edges, Smoothing::Area];
-    let total = cells.len() * smoothings.len() * solvers.len();
+    let smoothings = [Smoothing::None, Smoothing::Edges, Smoothing::Area, Smoothing::Shapes];
+    let orders = [Order::Second, Order::Fourth];
+    let total = cells.len() * smoothings.len() * orders.len() * solvers.len();
     let mut runs: Vec<(CostPoint, AScan)> = Vec::new();
     for solver in solvers {
         for &cell in cells {
-            let mut alone = None;
-            for smoothing in smoothings {
-                let setting = CostSetting { cell, smoothing, double_precision: solver.double_precision };
-                runs.push(one_run(scene, setting, solver, &mut alone, on_progress)?);
-                on_point(runs.len(), total);
+            for order in orders {
+                let mut alone = None;
+                for smoothing in smoothings {
+                    let setting = CostSetting { cell, smoothing, order, double_precision: solver.double_precision };
+                    runs.push(one_run(scene, setting, solver, &mut alone, on_progress)?);
+                    on_point(runs.len(), total);
+                }
             }
         }
     }
     let most_precise = solvers.iter().any(|solver| solver.double_precision);
-    let smooth: Vec<&AScan> = runs
-        .iter()
-        .filter(|(p, _)| p.setting.smoothing == Smoothing::Area && p.setting.double_precision == most_precise)
-        .map(|(_, trace)| trace)
-        .collect();
-    let [.., coarse, middle, fine] = smooth.as_slice() else {
-        return Err(CostError::TooFewCells { cells: smooth.len() });
+    let limit_of = |smoothing: Smoothing, order: Order| {
+        let of = |p: &CostSetting| p.smoothing == smoothing && p.order == order && p.double_precision == most_precise;
+        let traces: Vec<&AScan> = runs.iter().filter(|(p, _)| of(&p.setting)).map(|(_, trace)| trace).collect();
+        limit(&traces).ok_or(CostError::TooFewCells { cells: traces.len() })
     };
-    let (first, last) = (distance(coarse, middle), distance(middle, fine));
-    let measured_order = (first / last).log2().clamp(0.5, 4.0);
-    let weight = 1.0 / (2f64.powf(measured_order) - 1.0);
-    let limit: Vec<f64> =
-        fine.samples.iter().zip(&middle.samples).map(|(fine, middle)| fine + weight * (fine - middle)).collect();
-    let limit = AScan { samples: limit, ..(*fine).clone() };
+    let (limit, measured_order, last) = limit_of(Smoothing::Area, Order::Second)?;
+    let (other, order_of_shapes, _) = limit_of(Smoothing::Shapes, Order::Fourth)?;
     let size = norm(&limit.samples);
     let finest_difference = last / size;
+    let limits_differ = distance(&limit, &other) / size;
     let points = runs
         .iter()
         .map(|(point, trace)| CostPoint { error: distance(trace, &limit) / size, ..point.clone() })
         .collect();
-    Ok(CostTable { format_version: 1, frequency: scene.frequency(), measured_order, finest_difference, points })
+    Ok(CostTable {
+        format_version: 1,
+        frequency: scene.frequency(),
+        measured_order,
+        finest_difference,
+        order_of_shapes,
+        limits_differ,
+        points,
+    })
 }
 
-/// Runs a setting, and once per cell size the antenna alone; the difference holds the echoes alone.
+/// The limit of traces on cells that halve, with the order measured on the three finest and the difference of the last two.
+fn limit(traces: &[&AScan]) -> Option<(AScan, f64, f64)> {
+    let [.., coarse, middle, fine] = traces else { return None };
+    let (first, last) = (distance(coarse, middle), distance(middle, fine));
+    let order = (first / last).log2().clamp(0.5, 4.0);
+    let weight = 1.0 / (2f64.powf(order) - 1.0);
+    let samples =
+        fine.samples.iter().zip(&middle.samples).map(|(fine, middle)| fine + weight * (fine - middle)).collect();
+    Some((AScan { samples, ..(*fine).clone() }, order, last))
+}
+
+/// Runs a setting, and once per cell size and order the antenna alone; the difference holds the echoes alone.
 fn one_run(
     scene: &CostScene,
     setting: CostSetting,
@@ -212,8 +240,15 @@ fn distance(a: &AScan, b: &AScan) -> f64 {
     a.samples.iter().zip(&b.samples).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
 }
 
+impl CostPoint {
+    /// Cell-steps in those of order 2: a step of order 4 takes about 1.7 times as long.
+    fn work(&self) -> f64 {
+        self.cell_steps as f64 * if self.setting.order == Order::Fourth { 1.7 } else { 1.0 }
+    }
+}
+
 impl CostTable {
-    /// The setting of least cell-steps (single precision) whose error is at most `tolerance` at `frequency`.
+    /// The setting of least work (single precision) whose error is at most `tolerance` at `frequency`.
     ///
     /// The error is taken to depend on cells per wavelength, so that a cell size scales with the wavelength; an error
     /// counts only if every finer cell of the same smoothing keeps it too.
@@ -223,6 +258,7 @@ impl CostTable {
                 .iter()
                 .filter(|other| {
                     other.setting.smoothing == point.setting.smoothing
+                        && other.setting.order == point.setting.order
                         && other.setting.double_precision == point.setting.double_precision
                         && other.setting.cell.si() <= point.setting.cell.si()
                 })
@@ -231,7 +267,7 @@ impl CostTable {
         self.points
             .iter()
             .filter(|point| !point.setting.double_precision && holds(point))
-            .min_by(|a, b| a.cell_steps.cmp(&b.cell_steps).then(a.error.total_cmp(&b.error)))
+            .min_by(|a, b| a.work().total_cmp(&b.work()).then(a.error.total_cmp(&b.error)))
     }
 
     /// The smallest error that any setting reaches.
@@ -252,7 +288,7 @@ mod tests {
     use super::*;
 
     fn point(cell: f64, smoothing: Smoothing, error: f64) -> CostPoint {
-        let setting = CostSetting { cell: Metres(cell), smoothing, double_precision: false };
+        let setting = CostSetting { cell: Metres(cell), smoothing, order: Order::Second, double_precision: false };
         CostPoint { setting, error, seconds: 1.0, bytes: 1, cell_steps: (1.0 / cell.powi(3)) as u64 }
     }
 
@@ -263,6 +299,8 @@ mod tests {
             frequency: 1e9,
             measured_order: 2.0,
             finest_difference: 1e-3,
+            order_of_shapes: 2.0,
+            limits_differ: 0.0,
             points: vec![
                 point(0.008, Smoothing::Edges, 0.015), // by luck: the next finer one is worse
                 point(0.004, Smoothing::Edges, 0.05),

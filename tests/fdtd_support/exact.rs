@@ -111,3 +111,55 @@ pub fn hankel_0_2(z: Complex64) -> Complex64 {
     let y0 = 2.0 / PI * (((z / 2.0).ln() + EULER) * j0 + rest);
     j0 - Complex64::i() * y0
 }
+
+/// What a cylinder of radius `radius` and permittivity `eps_r` in air sends back to a receiver at `(rho, phi)` from its axis,
+/// the line current at `(rho_source, 0)`: the series of cylinder functions (Harrington 1961, section 5-9, continuity of E and
+/// of H along the rim), `-(w mu0/4) sum e_n c_n H_n(k rho) H_n(k rho_source) cos(n phi)`.
+pub fn cylinder(w: Complex64, eps_r: f64, radius: f64, rho_source: f64, rho: f64, phi: f64) -> Complex64 {
+    const TERMS: usize = 36;
+    let k = w / C0;
+    let inside = k * eps_r.sqrt();
+    let (outer, inner) = (cylinder_functions(k * radius, TERMS), cylinder_functions(inside * radius, TERMS));
+    let (source, receiver) = (cylinder_functions(k * rho_source, TERMS), cylinder_functions(k * rho, TERMS));
+    let slope = |f: &[Complex64], n: usize, z: Complex64| {
+        if n == 0 { -f[1] } else { f[n - 1] - f[n] * n as f64 / z }
+    };
+    let mut sum = Complex64::ZERO;
+    for n in 0..TERMS - 1 {
+        let (j, h, j1) = (outer.0[n], outer.1[n], inner.0[n]);
+        let j1_slope = inside * slope(&inner.0, n, inside * radius);
+        let (j_slope, h_slope) = (k * slope(&outer.0, n, k * radius), k * slope(&outer.1, n, k * radius));
+        let c = -(j * j1_slope - j_slope * j1) / (h * j1_slope - h_slope * j1);
+        let term = c * source.1[n] * receiver.1[n] * (n as f64 * phi).cos();
+        if term.is_finite() {
+            sum += term * if n == 0 { 1.0 } else { 2.0 };
+        }
+    }
+    -w * MU_0 / 4.0 * sum
+}
+
+/// `J_n` by power series and `H_n^(2)` by upward recurrence, `n` below `terms`.
+fn cylinder_functions(z: Complex64, terms: usize) -> (Vec<Complex64>, Vec<Complex64>) {
+    let series = |n: usize| {
+        let quarter = -(z * z) / 4.0;
+        let mut term = (1..=n).fold(Complex64::ONE, |term, k| term * z / (2.0 * k as f64));
+        let mut sum = term;
+        for k in 1..90 {
+            term = term * quarter / (k * (k + n)) as f64;
+            sum += term;
+        }
+        sum
+    };
+    let j: Vec<Complex64> = (0..terms).map(series).collect();
+    let h0 = hankel_0_2(z);
+    // The Wronskian, J1 Y0 - J0 Y1 = 2/(pi z), with H = J - i Y.
+    let i = Complex64::i();
+    let y0 = i * (h0 - j[0]);
+    let y1 = (j[1] * y0 - 2.0 / (PI * z)) / j[0];
+    let mut y = vec![y0, y1];
+    for n in 1..terms - 1 {
+        y.push(y[n] * (2.0 * n as f64) / z - y[n - 1]);
+    }
+    let h = j.iter().zip(&y).map(|(j, y)| j - i * y).collect();
+    (j, h)
+}

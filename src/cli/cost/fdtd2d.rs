@@ -11,10 +11,10 @@ use crate::fdtd::{self, Fdtd, FdtdError, Precision};
 use crate::files;
 use crate::forward::{ForwardError, Progress};
 use crate::gprmax;
-use crate::model::{Model, paint};
+use crate::model::{Model, Order, paint};
 use crate::plot::{Axis, Chart, Figure as _, Series, Stroke};
 use crate::scene::Smoothing;
-use crate::study::{CostPoint, CostScene, CostSolver, CostTable, cost_curve};
+use crate::study::{CostPoint, CostScene, CostSetting, CostSolver, CostTable, cost_curve};
 use crate::units::Metres;
 
 /// Coarsest cell of the curve.
@@ -67,6 +67,7 @@ fn smoothing(point: &CostPoint) -> &'static str {
         Smoothing::None => "staircase",
         Smoothing::Edges => "edges",
         Smoothing::Area => "area",
+        Smoothing::Shapes => "shapes",
     }
 }
 
@@ -75,12 +76,13 @@ fn precision(point: &CostPoint) -> &'static str {
 }
 
 fn csv(table: &CostTable) -> String {
-    let mut text = String::from("cell_mm,smoothing,precision,error_percent,seconds,bytes,cell_steps\n");
+    let mut text = String::from("cell_mm,smoothing,order,precision,error_percent,seconds,bytes,cell_steps\n");
     for point in &table.points {
         text.push_str(&format!(
-            "{},{},{},{},{},{},{}\n",
+            "{},{},{},{},{},{},{},{}\n",
             1e3 * point.setting.cell.si(),
             smoothing(point),
+            point.setting.order,
             precision(point),
             100.0 * point.error,
             point.seconds,
@@ -94,12 +96,13 @@ fn csv(table: &CostTable) -> String {
 fn print(table: &CostTable) {
     let mut report = Report::new(
         "Error of the echoes (relative L2) against the extrapolated trace, tank with 20 cm of fouling, 1 GHz",
-        ["cell, mm", "smoothing", "precision", "error, %", "seconds", "memory", "cell-steps"],
+        ["cell, mm", "smoothing", "order", "precision", "error, %", "seconds", "memory", "cell-steps"],
     );
     for point in &table.points {
         report.row([
             format!("{}", 1e3 * point.setting.cell.si()),
             smoothing(point).into(),
+            point.setting.order.to_string(),
             precision(point).into(),
             format!("{:.3}", 100.0 * point.error),
             format!("{:.3}", point.seconds),
@@ -109,9 +112,12 @@ fn print(table: &CostTable) {
     }
     report.print();
     println!(
-        "order of convergence of the area-smoothed traces: {:.2}; the two finest differ by {:.2} %",
+        "order of convergence: area means and order 2 {:.2}, the two finest differ by {:.2} %; true shapes and order 4 {:.2}; \
+         their limits differ by {:.3} %",
         table.measured_order,
-        100.0 * table.finest_difference
+        100.0 * table.finest_difference,
+        table.order_of_shapes,
+        100.0 * table.limits_differ
     );
 }
 
@@ -121,28 +127,31 @@ fn figure(table: &CostTable) -> Chart {
         Axis::log10("wall time", "s"),
         Axis::log10("error of the echoes", "%"),
     );
-    for (index, (kind, name)) in
-        [(Smoothing::None, "staircase"), (Smoothing::Edges, "edge means"), (Smoothing::Area, "area means")]
-            .into_iter()
-            .enumerate()
-    {
-        for (double, style) in [(false, Stroke::LineAndPoints), (true, Stroke::Points)] {
-            let points: Vec<(f64, f64)> = table
-                .points
-                .iter()
-                .filter(|point| point.setting.smoothing == kind && point.setting.double_precision == double)
-                .map(|point| (point.seconds, 100.0 * point.error))
-                .collect();
-            let label = format!("{name}, {}", if double { "double" } else { "single" });
-            chart.series.push(Series::line(&label, points).drawn(style, index + 3 * usize::from(double)));
+    let kinds = [
+        (Smoothing::None, "staircase"),
+        (Smoothing::Edges, "edge means"),
+        (Smoothing::Area, "area means"),
+        (Smoothing::Shapes, "true shapes"),
+    ];
+    for (index, (kind, name)) in kinds.into_iter().enumerate() {
+        for (order, style) in [(Order::Second, Stroke::Points), (Order::Fourth, Stroke::LineAndPoints)] {
+            let of = |p: &CostSetting| p.smoothing == kind && p.order == order && !p.double_precision;
+            let points = table.points.iter().filter(|point| of(&point.setting));
+            let points: Vec<(f64, f64)> = points.map(|point| (point.seconds, 100.0 * point.error)).collect();
+            let label = format!("{name}, order {order}");
+            chart
+                .series
+                .push(Series::line(&label, points).drawn(style, index + 4 * usize::from(order == Order::Second)));
         }
     }
-    for point in table.points.iter().filter(|p| !p.setting.double_precision && p.setting.smoothing == Smoothing::Area) {
+    for point in table.points.iter().filter(|p| {
+        !p.setting.double_precision && p.setting.smoothing == Smoothing::Shapes && p.setting.order == Order::Fourth
+    }) {
         chart.markers.push(crate::plot::Marker {
             x: point.seconds,
             y: 100.0 * point.error,
             label: point.setting.cell.in_unit("mm"),
-            colour: 2,
+            colour: 3,
         });
     }
     chart

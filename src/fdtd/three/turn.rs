@@ -56,6 +56,7 @@ impl Turn {
             transverse_electric: model.transverse_electric.map(|axis| self.direction(axis)),
             stability_factor: model.stability_factor,
             order: model.order,
+            averaging: model.averaging,
             time_window: model.time_window,
             pml_cells: model.pml_cells.map(sides),
             absorbing_profile: model.absorbing_profile.clone(),

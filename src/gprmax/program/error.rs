@@ -48,11 +48,17 @@ pub enum RunError {
         log: PathBuf,
     },
     /// Another scheme than gprMax's.
-    #[error("gprMax has differences of order 2 only, but the model asks for {order}\n\nhint: `--order 2`")]
+    #[error("gprMax has differences of order 2 only, but the model asks for order {order}\n\nhint: `--order 2`")]
     Order {
         /// What the model asks for.
         order: Order,
     },
+    /// Other edges than gprMax's.
+    #[error(
+        "gprMax takes the mean of four cells on an edge, but the model asks for the mean over the true shapes\n\n\
+         hint: `build --smoothing edges`, or leave `## ballast-gpr: averaging shapes` out of the file"
+    )]
+    Averaging,
     /// The caller asked to stop.
     #[error("stopped on request")]
     Stopped,

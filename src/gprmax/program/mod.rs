@@ -6,4 +6,4 @@ mod progress;
 mod run;
 
 pub use error::RunError;
-pub use run::{GprMax, GprMaxRun};
+pub use run::{GprMax, GprMaxRun, check_scheme};

@@ -15,7 +15,7 @@ use super::process::{Event, run};
 use super::progress::{loop_seconds, progress};
 use crate::files::FileError;
 use crate::forward::{Forward, ForwardError, OnProgress, Progress};
-use crate::model::{Model, Order};
+use crate::model::{Averaging, Model, Order};
 use crate::trace::Traces;
 
 /// Lines of gprMax's own output that an error shows.
@@ -118,9 +118,7 @@ impl GprMax {
     /// # Errors
     /// See [`RunError`].
     pub fn run_model(&self, model: &Model, on_progress: OnProgress<'_>) -> Result<GprMaxRun, RunError> {
-        if model.order != Order::Second {
-            return Err(RunError::Order { order: model.order });
-        }
+        check_scheme(model.order, model.averaging)?;
         let place = std::env::temp_dir();
         let folder = tempfile::Builder::new()
             .prefix("ballast-gpr-")
@@ -153,6 +151,17 @@ impl GprMax {
     }
 }
 
+/// Refuses what gprMax cannot do, though a model or file asks for it.
+///
+/// # Errors
+/// For differences of fourth order, and for edges averaged over true shapes.
+pub fn check_scheme(order: Order, averaging: Averaging) -> Result<(), RunError> {
+    if order != Order::Second {
+        return Err(RunError::Order { order });
+    }
+    if averaging != Averaging::Cells { Err(RunError::Averaging) } else { Ok(()) }
+}
+
 impl Forward for GprMax {
     fn name(&self) -> &'static str {
         "gprmax"
@@ -162,7 +171,9 @@ impl Forward for GprMax {
         match self.run_model(model, on_progress) {
             Ok(run) => Ok(run.traces),
             Err(RunError::Stopped) => Err(ForwardError::Stopped),
-            Err(error @ (RunError::Write(_) | RunError::Order { .. })) => Err(ForwardError::Model(Box::new(error))),
+            Err(error @ (RunError::Write(_) | RunError::Order { .. } | RunError::Averaging)) => {
+                Err(ForwardError::Model(Box::new(error)))
+            }
             Err(error) => Err(ForwardError::Solver(Box::new(error))),
         }
     }

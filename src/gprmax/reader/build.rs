@@ -3,14 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use super::commands::CommandKind;
-use super::directives;
+use super::directives::{Directives, directives};
 use super::error::InFileError;
 use super::include::Whole;
 use super::lines::split;
 use super::multiple::apply;
 use super::single::start;
-use crate::files::read_text;
-use crate::model::{Model, Order};
+use crate::model::Model;
 
 /// What an input file holds.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,8 +63,8 @@ pub fn input_files(path: &Path) -> Result<Vec<PathBuf>, InFileError> {
 fn read_whole(path: &Path, text: &str) -> Result<Input, InFileError> {
     let at = |line: usize| move |problem| InFileError::Line { path: path.into(), line, problem: Box::new(problem) };
     let (commands, indented) = split(text).map_err(|(line, problem)| at(line)(problem))?;
-    let order = directives::order(text).map_err(|(line, problem)| at(line)(problem))?;
-    let mut model = start(path, &commands, order)?;
+    let asked = directives(text).map_err(|(line, problem)| at(line)(problem))?;
+    let mut model = start(path, &commands, asked)?;
     let mut notes: Vec<Note> = indented
         .into_iter()
         .map(|line| Note { line, text: "ignored, as gprMax does: a command must start in the first column".into() })
@@ -121,12 +120,12 @@ pub fn read_model(path: &Path) -> Result<Model, InFileError> {
     read_input(path).map(|input| input.model)
 }
 
-/// The order of differences that an input file asks for (`## ballast-gpr: order 4`), whatever else stands in it.
+/// What an input file asks of the embedded solver alone (`## ballast-gpr: order 4`), whatever else stands in it.
 ///
 /// # Errors
 /// When the file cannot be read, or asks for something unknown.
-pub fn read_order(path: &Path) -> Result<Order, InFileError> {
-    let text = read_text(path)?;
+pub fn read_directives(path: &Path) -> Result<Directives, InFileError> {
+    let whole = Whole::read(path)?;
     let at = |line: usize| move |problem| InFileError::Line { path: path.into(), line, problem: Box::new(problem) };
-    directives::order(&text).map_err(|(line, problem)| at(line)(problem))
+    directives(&whole.text).map_err(|(line, problem)| whole.error(at(line)(problem)))
 }

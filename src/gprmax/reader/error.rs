@@ -54,7 +54,7 @@ pub enum InFileError {
 pub enum Problem {
     /// A comment for the embedded solver that it does not know.
     #[error(
-        "`{text}` is nothing that the embedded solver can be told\n\nhint: `## ballast-gpr: order 4`, or `order 2`"
+        "`{text}` is nothing that the embedded solver can be told\n\nhint: `## ballast-gpr: order 4` or `## ballast-gpr: averaging shapes`"
     )]
     Directive {
         /// What stands there.

@@ -22,6 +22,7 @@ mod values;
 
 pub(super) use directives::DIRECTIVE;
 
-pub use build::{Input, Note, input_files, read_input, read_model, read_order};
+pub use build::{Input, Note, input_files, read_directives, read_input, read_model};
 pub use commands::{COMMANDS, CommandKind};
+pub use directives::Directives;
 pub use error::{InFileError, Problem};

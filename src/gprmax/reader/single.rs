@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use super::boundary::formulation;
+use super::directives::Directives;
 use super::error::{InFileError, Problem};
 use super::lines::Command;
 use super::values::Parameters;
-use crate::model::{Axis, Grid, Model, Order, TimeWindow, ceil_half_down};
+use crate::model::{Axis, Grid, Model, TimeWindow, ceil_half_down};
 
 /// `#domain_mode`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,7 +22,7 @@ const MOST_CELLS: f64 = 4_294_967_296.0;
 const MOST_STEPS: f64 = 1e9;
 
 /// The model before anything is in it: grid, time window and the other single commands.
-pub(super) fn start(path: &Path, commands: &[Command<'_>], order: Order) -> Result<Model, InFileError> {
+pub(super) fn start(path: &Path, commands: &[Command<'_>], asked: Directives) -> Result<Model, InFileError> {
     let find = |name: &str| commands.iter().find(|command| command.name == name);
     let at = |command: &Command<'_>| {
         let line = command.line;
@@ -39,7 +40,7 @@ pub(super) fn start(path: &Path, commands: &[Command<'_>], order: Order) -> Resu
     let (grid, infinite) = grid(domain, sizes, mode).map_err(at(domain))?;
     let title = find("title").map_or("", |command| command.parameters);
     let mut model = Model::new(title, grid, TimeWindow::Iterations(1));
-    model.order = order;
+    (model.order, model.averaging) = (asked.order, asked.averaging);
     model.transverse_electric = infinite.filter(|_| mode == Some(DomainMode::Transverse { electric: true }));
     if let Some(command) = find("time_step_stability_factor") {
         model.stability_factor = stability_factor(command).map_err(at(command))?;

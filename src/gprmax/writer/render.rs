@@ -13,8 +13,8 @@ use super::pulse_files::{PulseFiles, sampled};
 use super::voxel_files::{VoxelFiles, command_safe};
 use crate::files::write_bytes;
 use crate::model::{
-    Beyond, Formulation, Grading, Material, MaterialId, Model, Object, Order, Resonance, Source, Stretch, TimeWindow,
-    VoltageSource,
+    Averaging, Beyond, Formulation, Grading, Material, MaterialId, Model, Object, Order, Resonance, Source, Stretch,
+    TimeWindow, VoltageSource,
 };
 
 /// The template that is built in.
@@ -39,8 +39,8 @@ pub struct InputOptions {
 #[derive(Debug, Serialize)]
 struct Page {
     generator: &'static str,
-    /// What only the embedded solver reads; empty for gprMax's own scheme.
-    directive: String,
+    /// What only the embedded solver reads; none for gprMax's own scheme.
+    directives: Vec<String>,
     title: String,
     domain: [String; 3],
     domain_mode: &'static str,
@@ -174,10 +174,7 @@ fn page(model: &Model, voxels: &VoxelFiles<'_>, pulses: &PulseFiles<'_>) -> Resu
     }
     Ok(Page {
         generator: concat!("written by ballast-gpr ", env!("CARGO_PKG_VERSION")),
-        directive: match model.order {
-            Order::Second => String::new(),
-            order => format!("{DIRECTIVE} order {order}"),
-        },
+        directives: directives(model),
         title: model.title.split_whitespace().collect::<Vec<_>>().join(" "),
         domain: std::array::from_fn(|axis| match model.transverse_electric {
             Some(across) if across.index() == axis => "inf".into(),
@@ -229,6 +226,13 @@ fn page(model: &Model, voxels: &VoxelFiles<'_>, pulses: &PulseFiles<'_>) -> Resu
         receiver_steps: steps(model.receiver_steps),
         objects,
     })
+}
+
+fn directives(model: &Model) -> Vec<String> {
+    let order = (model.order != Order::Second).then(|| format!("{DIRECTIVE} order {}", model.order));
+    let averaging = model.averaging;
+    let averaging = (averaging != Averaging::Cells).then(|| format!("{DIRECTIVE} averaging {}", averaging.name()));
+    order.into_iter().chain(averaging).collect()
 }
 
 fn steps(steps: [f64; 3]) -> Vec<String> {

@@ -3,6 +3,15 @@
 /// Why a model could not be painted.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PaintError {
+    /// An object of which an edge's share is not known.
+    #[error(
+        "object {number} has no true shape in the plane: a mean over shapes takes boxes and cylinders along z, in two \
+         dimensions\n\nhint: `--smoothing edges`, or leave `## ballast-gpr: averaging shapes` out"
+    )]
+    NoShare {
+        /// Place in the list of objects, from 1.
+        number: usize,
+    },
     /// The grid is not two-dimensional with z as the invariant axis.
     #[error(
         "a grid of {0} x {1} x {2} cells is not two-dimensional along z\n\n\

@@ -9,8 +9,9 @@ use super::chunk::Job;
 use super::layout::{Layout, check_two_dimensional};
 use super::settle::Settled;
 use super::solid::{Solid, description, solids};
+use crate::model::averaging::average_shapes;
 use crate::model::palette::{FaceMaterial, Palette};
-use crate::model::{EdgeMaterial, Indices, Material, MaterialId, Model, Painted, Painted3};
+use crate::model::{Averaging, EdgeMaterial, Indices, Material, MaterialId, Model, Painted, Painted3};
 
 /// Paints the objects of a model that is invariant along z.
 ///
@@ -22,13 +23,17 @@ pub fn paint(model: &Model) -> Result<Painted, PaintError> {
     let [_, edges, _] = whole.edges;
     let [nx, ny, _] = model.grid.cells;
     let averaged_edges = whole.averaged[1];
-    Ok(Painted {
+    let mut painted = Painted {
         cells_xy: [nx, ny],
         solid: whole.solid,
         palette: whole.palette,
         edge_z: edges.to_vec(),
         averaged_edges,
-    })
+    };
+    if model.averaging == Averaging::Shapes {
+        average_shapes(model, &mut painted)?;
+    }
+    Ok(painted)
 }
 
 /// Paints the objects of a model on any grid; [`paint`] gives less for a plane along z.
@@ -39,6 +44,9 @@ pub fn paint(model: &Model) -> Result<Painted, PaintError> {
 /// # Errors
 /// When an object fills no cell or has no such material.
 pub fn paint3(model: &Model) -> Result<Painted3, PaintError> {
+    if model.averaging == Averaging::Shapes && !model.objects.is_empty() {
+        return Err(PaintError::NoShare { number: 1 });
+    }
     let whole = Whole::new(model, Layout::new(model.grid, false))?;
     Ok(Painted3 {
         cells: model.grid.cells,
