@@ -280,7 +280,8 @@ mod tests {
         cuboid(14.0, stone);
         cuboid(24.0, MaterialId::PEC);
         let effects = effects(&model);
-        assert!(effects.list.iter().take(5).all(|effect| effect.on), "{effects:?}");
+        let called_for = effects.list.iter().filter(|effect| !effect.name.starts_with("Lorentz"));
+        assert!(called_for.take(5).all(|effect| effect.on), "{effects:?}");
         assert_eq!(effects.named("electric").unwrap().reason, "`wet_fines` conducts");
         let debye = effects.named("Debye").unwrap();
         assert_eq!(debye.name, "Debye relaxation (2 poles)");
