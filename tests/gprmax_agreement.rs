@@ -47,10 +47,16 @@ fn differences(theirs: &Traces, ours: &Traces) -> [f64; 2] {
     // The last bit of the step depends on the order of a sum where cells are not square.
     assert!((ours.time_step.si() / theirs.time_step.si() - 1.0).abs() < 1e-15);
     let mut worst: [f64; 2] = [0.0; 2];
+    let mut seen = false;
     for (a, b) in theirs.receivers.iter().zip(&ours.receivers) {
         let both = |component| (a.component(component).unwrap(), b.component(component).unwrap());
         let (ez, our_ez) = both(Component::Ez);
-        assert!(ez.peak() > 0.0, "`{}` saw nothing", a.name);
+        if ez.peak() == 0.0 {
+            // A receiver inside metal.
+            assert!(a.components.iter().chain(&b.components).all(|trace| trace.peak() == 0.0), "`{}`", a.name);
+            continue;
+        }
+        seen = true;
         worst[0] = worst[0].max(relative_l2(ez, our_ez).unwrap());
         let magnetic = [Component::Hx, Component::Hy].map(both);
         let size = magnetic.map(|(h, _)| norm(&h.samples)).into_iter().fold(0.0, f64::hypot);
@@ -65,6 +71,7 @@ fn differences(theirs: &Traces, ours: &Traces) -> [f64; 2] {
             }
         }
     }
+    assert!(seen, "no receiver saw anything");
     worst
 }
 

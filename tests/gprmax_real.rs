@@ -235,7 +235,9 @@ fn the_current_of_a_source_is_that_of_gprmax() {
         model.time_window = TimeWindow::Iterations(500);
         model.waveforms[0].kind = kind.clone();
         let Source::HertzianDipole(dipole) = &mut model.sources[0] else { panic!("a current") };
-        dipole.excitation = Excitation { start: 2e-10, stop: Some(1.6e-9) };
+        // An impulse lasts one step and slips between the samples of a current that starts at this time.
+        let start = if kind == WaveformKind::Impulse { 0.0 } else { 2e-10 };
+        dipole.excitation = Excitation { start, stop: Some(1.6e-9) };
         let paths = write_input(&model, folder.path(), "scene", &InputOptions::default()).unwrap();
         let (theirs, ours) = (folder.path().join("theirs.h5"), folder.path().join("ours.h5"));
         let run = solver(interpreter.clone(), true).run_file(&paths[0], &theirs, &go_on).unwrap();
