@@ -162,3 +162,55 @@ mod interrupted {
         assert!(place.files("") == before, "{:?}", place.names(""));
     }
 }
+
+const WRITES: &str = "#domain: 0.1 0.08 0.002\n#dx_dy_dz: 0.002 0.002 0.002\n#time_window: 150\n#pml_cells: 5 5 0 5 5 0\n\
+    #material: 6 0.001 1 0 stone\n#waveform: ricker 1 1e9 w\n#hertzian_dipole: z 0.03 0.04 0 w\n#rx: 0.07 0.04 0\n\
+    #box: 0.02 0.02 0 0.06 0.03 0.002 stone\n#box: 0.04 0.02 0 0.05 0.024 0.002 pec\n";
+
+/// `#geometry_objects_write` writes beside the input file what `#geometry_objects_read` finds again: the whole domain, read
+/// into an empty one, gives the same traces. A file that is in the way stays as it was.
+#[test]
+fn geometry_files_are_written_and_read_back() {
+    let place = Place::new();
+    fs::create_dir(place.path("in")).unwrap();
+    fs::write(place.path("in/a.in"), format!("{WRITES}#geometry_objects_write: 0 0 0 0.1 0.08 0.002 bed\n")).unwrap();
+    fs::write(place.path("in/bed_materials.json"), "of somebody else").unwrap();
+    let error = place.fails(&["run", "in/a.in"], 2);
+    assert!(error.contains("`in/bed_materials.json`, which exists already with another content"), "{error}");
+    assert!(!place.path("in/a.h5").exists() && !place.path("in/bed.h5").exists());
+    place.ok(&["run", "in/a.in", "--force", "--precision", "double"]);
+    // The same bytes in the way are no obstacle.
+    place.ok(&["run", "in/a.in", "--out", "again.h5", "--precision", "double"]);
+    let objects = WRITES.find("#box").unwrap();
+    let read = "#geometry_objects_read: 0 0 0 bed.h5 bed_materials y\n";
+    fs::write(place.path("in/b.in"), format!("{}{read}", &WRITES[..objects])).unwrap();
+    place.ok(&["run", "in/b.in", "--precision", "double"]);
+    let traces = |name: &str| ballast_gpr::gprmax::read_traces(&place.path(name)).unwrap().receivers;
+    assert!(traces("in/a.h5")[0].components.iter().any(|trace| trace.peak() > 0.0));
+    assert_eq!(traces("in/a.h5"), traces("in/b.h5"));
+    fs::write(place.path("in/empty.in"), &WRITES[..objects]).unwrap();
+    place.ok(&["run", "in/empty.in", "--precision", "double"]);
+    assert_ne!(traces("in/a.h5"), traces("in/empty.h5"));
+}
+
+/// A B-scan writes its geometry files once; nothing is written over its traces or over what it reads.
+#[test]
+fn geometry_files_of_a_b_scan_and_names_in_use() {
+    let place = Place::new();
+    let write = |name: &str, line: &str| fs::write(place.path(name), format!("{WRITES}{line}\n")).unwrap();
+    write("scan.in", "#rx_steps: 0.002 0 0\n#geometry_objects_write: 0.02 0.02 0 0.06 0.03 0.002 part.h5");
+    place.ok(&["run", "scan.in", "--traces", "2"]);
+    assert!(place.path("part.h5").is_file() && place.path("part_h5_materials.json").is_file());
+    write("own.in", "#geometry_objects_write: 0.02 0.02 0 0.06 0.03 0.002 own");
+    let error = place.fails(&["run", "own.in"], 2);
+    assert!(error.contains("would write `own.h5`, where the traces go"), "{error}");
+    write(
+        "loop.in",
+        "#geometry_objects_read: 0 0 0 part.h5 part_h5_materials y\n#geometry_objects_write: 0 0 0 0.1 0.08 0.002 part.h5",
+    );
+    let error = place.fails(&["run", "loop.in", "--force"], 2);
+    assert!(error.contains("would write `part.h5`, which `loop.in` reads"), "{error}");
+    write("far.in", "#geometry_objects_write: 0.02 0.02 0 0.06 0.03 0.002 nowhere/part");
+    let error = place.fails(&["run", "far.in"], 2);
+    assert!(error.contains("but `nowhere` is not a folder"), "{error}");
+}

@@ -7,6 +7,7 @@ use std::time::Instant;
 use crate::cli::checkpoint;
 use crate::cli::error::CliError;
 use crate::cli::folder::RunRecord;
+use crate::cli::geometry_files;
 use crate::cli::progress::Bar;
 use crate::cli::run::{Outcome, RunArgs, SolverName, built_in_solver, fingerprint, kept_or_refused, paths, record};
 use crate::cli::table::Report;
@@ -85,6 +86,8 @@ pub fn run(args: &RunArgs, count: NonZeroUsize) -> Result<(), CliError> {
     if model.source_steps == [0.0; 3] && model.receiver_steps == [0.0; 3] {
         eprintln!("warning: without `#src_steps` and `#rx_steps` all traces are the same");
     }
+    let results: Vec<PathBuf> = (1..=count.get()).map(|number| numbered(&result, number)).collect();
+    geometry_files::check(&model, &input, &results, args.force)?;
     let geometry = Geometry::of(&model)?;
     let solver = built_in_solver(args);
     let bar = Bar::new("B-scan");
@@ -107,6 +110,9 @@ pub fn run(args: &RunArgs, count: NonZeroUsize) -> Result<(), CliError> {
         outcomes.push(Outcome { target: target.clone(), result, kept: false, record });
     }
     drop(bar);
+    if outcomes.iter().any(|outcome| !outcome.kept) {
+        geometry_files::write(&model, &input)?;
+    }
     if args.json {
         println!("{}", serde_json::to_string_pretty(&outcomes)?);
         return Ok(());

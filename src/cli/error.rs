@@ -67,6 +67,7 @@ macro_rules! exit_codes {
 exit_codes! {
     Input: crate::packing::PackingError, crate::raster::RasterError, crate::compare::CompareError,
         crate::compare::text::TextError, crate::model::CheckError, crate::model::PaintError, crate::units::UnitError;
+    Input: crate::gprmax::GeometryWriteError;
     Fault: serde_json::Error, crate::study::CaseError;
 }
 

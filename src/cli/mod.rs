@@ -13,6 +13,7 @@ mod demo;
 mod error;
 mod explain;
 mod folder;
+mod geometry_files;
 mod gprmax;
 mod interrupt;
 mod manifest;

@@ -11,6 +11,7 @@ use crate::cli::bscan;
 use crate::cli::checkpoint::{self, CheckpointArgs};
 use crate::cli::error::CliError;
 use crate::cli::folder::{self, RunRecord};
+use crate::cli::geometry_files;
 use crate::cli::progress::Bar;
 use crate::fdtd::{Fdtd, Precision};
 use crate::gprmax;
@@ -270,6 +271,7 @@ fn run_fdtd(args: &RunArgs, input: &Path, result: &Path) -> Result<Option<f64>, 
     for note in &read.notes {
         eprintln!("note: {note}");
     }
+    geometry_files::check(&read.model, input, &[result.to_path_buf()], args.force)?;
     let bar = Bar::new("simulating");
     let mut model = read.model;
     model.order = args.order.unwrap_or(model.order);
@@ -280,6 +282,7 @@ fn run_fdtd(args: &RunArgs, input: &Path, result: &Path) -> Result<Option<f64>, 
     })?;
     drop(bar);
     gprmax::write_traces(result, &traces, &model)?;
+    geometry_files::write(&model, input)?;
     used.remove();
     Ok(Some(stats.wall.si()))
 }

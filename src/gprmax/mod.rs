@@ -14,7 +14,7 @@ mod program;
 mod reader;
 mod writer;
 
-pub use geometry::GeometryError;
+pub use geometry::{GeometryError, GeometryWriteError, geometry_files, geometry_paths};
 pub use install::{InstallError, Interpreter, VersionInfo};
 pub use output::{OutputError, OutputWriteError, read_traces, traces_to_bytes, write_traces};
 pub use program::{GprMax, GprMaxRun, RunError, check_scheme};

@@ -8,6 +8,7 @@ mod absorbing;
 mod averaging;
 mod check;
 mod effects;
+mod geometry_file;
 mod grid;
 mod indices;
 mod material;
@@ -30,6 +31,7 @@ pub use check::{
     check_absorbing_cells, check_memory, check_mode, check_recording, check_stability_factor, mebibytes,
 };
 pub use effects::{Effect, Effects};
+pub use geometry_file::GeometryFile;
 pub use grid::{Grid, ceil_half_down};
 pub use indices::Indices;
 pub use material::{DebyePole, Material, MaterialId, Resonance};

@@ -1,6 +1,9 @@
 //! The model itself.
 
-use super::{AbsorbingProfile, Averaging, Axis, Grid, Material, MaterialId, Object, Order, Receiver, Source, Waveform};
+use super::{
+    AbsorbingProfile, Averaging, Axis, GeometryFile, Grid, Material, MaterialId, Object, Order, Receiver, Source,
+    Waveform,
+};
 
 /// How long to simulate.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,6 +54,8 @@ pub struct Model {
     pub source_steps: [f64; 3],
     /// How far all receivers move from one trace of a B-scan to the next, m (`#rx_steps`).
     pub receiver_steps: [f64; 3],
+    /// Geometry files to write (`#geometry_objects_write`); no trace depends on them.
+    pub geometry_files: Vec<GeometryFile>,
 }
 
 impl Model {
@@ -75,6 +80,7 @@ impl Model {
             receivers: vec![],
             source_steps: [0.0; 3],
             receiver_steps: [0.0; 3],
+            geometry_files: vec![],
         }
     }
 

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use ballast_gpr::gprmax::{InputOptions, Note, input_files, read_input, read_model, write_input};
 use ballast_gpr::model::{
-    Axis, DebyePole, Excitation, Grid, HertzianDipole, MagneticDipole, Material, MaterialId, Model, Object, Receiver,
-    Source, TimeWindow, VoltageSource, Voxels, Waveform, WaveformKind,
+    Axis, DebyePole, Excitation, GeometryFile, Grid, HertzianDipole, MagneticDipole, Material, MaterialId, Model,
+    Object, Receiver, Source, TimeWindow, VoltageSource, Voxels, Waveform, WaveformKind,
 };
 use proptest::prelude::*;
 
@@ -264,6 +264,20 @@ fn reference_cases_survive_a_round_trip() {
         let paths = write_input(&model, folder.path(), case, &InputOptions::default()).unwrap();
         assert_eq!(meaning(&read_model(&paths[0]).unwrap()), meaning(&model), "{case}");
     }
+}
+
+/// A request for a geometry file stays in the file, and a name that no command can hold is refused.
+#[test]
+fn requests_for_geometry_files_survive_a_round_trip() {
+    let folder = tempfile::tempdir().unwrap();
+    let asked = |file: &str| GeometryFile { lower: [0.02, 0.0, 0.0], upper: [0.2, 0.1, 0.004], file: file.into() };
+    let mut model = small_model();
+    model.geometry_files = vec![asked("out.h5"), asked("other")];
+    let paths = write_input(&model, folder.path(), "bed", &InputOptions::default()).unwrap();
+    assert_eq!(read_model(&paths[0]).unwrap().geometry_files, model.geometry_files);
+    model.geometry_files[0].file = "two words".into();
+    let error = write_input(&model, folder.path(), "bed", &InputOptions::default()).unwrap_err().to_string();
+    assert!(error.starts_with("gprMax does not take `two words` as the name of a geometry file"), "{error}");
 }
 
 /// Every kind of object that fills cells or claims edges says the same after reading, writing and reading again.

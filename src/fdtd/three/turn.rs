@@ -69,6 +69,7 @@ impl Turn {
             receivers: model.receivers.iter().map(receiver).collect(),
             source_steps: self.triple(model.source_steps),
             receiver_steps: self.triple(model.receiver_steps),
+            geometry_files: vec![],
         }
     }
 

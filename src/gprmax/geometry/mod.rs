@@ -4,8 +4,11 @@
 
 mod database;
 mod error;
+mod request;
 mod voxels;
 
 pub(super) use database::{Database, write_database};
 pub use error::GeometryError;
+pub(super) use request::geometry_names;
+pub use request::{GeometryWriteError, geometry_files, geometry_paths};
 pub(super) use voxels::{read_voxels, voxel_group};

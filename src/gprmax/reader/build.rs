@@ -90,6 +90,7 @@ fn read_whole(path: &Path, text: &str) -> Result<Input, InFileError> {
             "plate",
             "edge",
             "geometry_objects_read",
+            "geometry_objects_write",
         ],
     ];
     for pass in passes {

@@ -171,7 +171,7 @@ pub enum Problem {
     /// A material or waveform that is defined already.
     #[error("the {what} `{id}` is defined already")]
     DefinedTwice {
-        /// `material` or `waveform`.
+        /// `material`, `waveform` or `geometry file`.
         what: &'static str,
         /// The identifier.
         id: String,
@@ -223,8 +223,10 @@ pub enum Problem {
         upper: f64,
     },
     /// A box without a cell.
-    #[error("`#box` fills no cell along {axis}: it reaches from {lower} m to {upper} m")]
+    #[error("`#{command}` fills no cell along {axis}: it reaches from {lower} m to {upper} m")]
     NoCells {
+        /// Name of the command.
+        command: String,
         /// `x`, `y` or `z`.
         axis: &'static str,
         /// Lower coordinate, m.

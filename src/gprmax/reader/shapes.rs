@@ -105,7 +105,12 @@ fn ends(model: &Model, p: &Parameters<'_>, what: &'static str) -> Result<([f64; 
     inside(model, what, upper)?;
     for (axis, cells) in AXES.into_iter().zip(extents(model, lower, upper)) {
         if cells < 0 {
-            return Err(Problem::NoCells { axis: axis.name(), lower: lower[axis.index()], upper: upper[axis.index()] });
+            return Err(Problem::NoCells {
+                command: p.command().into(),
+                axis: axis.name(),
+                lower: lower[axis.index()],
+                upper: upper[axis.index()],
+            });
         }
     }
     Ok((lower, upper))

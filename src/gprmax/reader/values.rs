@@ -20,6 +20,11 @@ impl<'a> Parameters<'a> {
         Ok(Self { command: command.name, form, words })
     }
 
+    /// Name of the command, without `#`.
+    pub fn command(&self) -> &'a str {
+        self.command
+    }
+
     /// How many there are.
     pub fn len(&self) -> usize {
         self.words.len()

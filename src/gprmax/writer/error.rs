@@ -26,7 +26,7 @@ pub enum WriteError {
     /// An identifier that gprMax would not read back.
     #[error("gprMax does not take `{id}` as the name of a {what}: it must not be empty, nor hold blanks{}", if *what == "material" { " or `+`" } else { "" })]
     Identifier {
-        /// `material`, `waveform` or `receiver`.
+        /// `material`, `waveform`, `receiver` or `geometry file`.
         what: &'static str,
         /// The identifier.
         id: String,

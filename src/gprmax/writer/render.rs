@@ -13,8 +13,8 @@ use super::pulse_files::{PulseFiles, sampled};
 use super::voxel_files::{VoxelFiles, command_safe};
 use crate::files::write_bytes;
 use crate::model::{
-    Averaging, Beyond, Formulation, Grading, Material, MaterialId, Model, Object, Order, Resonance, Source, Stretch,
-    TimeWindow, VoltageSource,
+    Averaging, Beyond, Formulation, GeometryFile, Grading, Material, MaterialId, Model, Object, Order, Resonance,
+    Source, Stretch, TimeWindow, VoltageSource,
 };
 
 /// The template that is built in.
@@ -28,7 +28,7 @@ pub const DEFAULT_TEMPLATE: &str = include_str!("../../../templates/model.in");
 /// `dispersive_averaging`, `waveforms` (`kind`, `amplitude`,
 /// `frequency`, `id`; `file`, `between`, `beyond` of pulses given as samples), `sources` (`command`, `polarisation`, `position`, `resistance`,
 /// `waveform`, `start`, `stop`), `receivers` (`position`, `name`),
-/// lists `source_steps`, `receiver_steps`, and `objects`, the finished lines. What is not given is an empty text or list; a name that does not exist is an error.
+/// lists `source_steps`, `receiver_steps`, and `objects` and `geometry_files`, the finished lines. What is not given is an empty text or list; a name that does not exist is an error.
 #[derive(Debug, Clone, Default)]
 pub struct InputOptions {
     /// Name and text of a template to use instead of [`DEFAULT_TEMPLATE`].
@@ -64,6 +64,8 @@ struct Page {
     receiver_steps: Vec<String>,
     /// `#box`, `#cylinder`, `#sphere` and `#geometry_objects_read` lines, in the order of painting.
     objects: Vec<String>,
+    /// `#geometry_objects_write` lines.
+    geometry_files: Vec<String>,
 }
 
 #[derive(Debug, Serialize)]
@@ -225,6 +227,7 @@ fn page(model: &Model, voxels: &VoxelFiles<'_>, pulses: &PulseFiles<'_>) -> Resu
         source_steps: steps(model.source_steps),
         receiver_steps: steps(model.receiver_steps),
         objects,
+        geometry_files: model.geometry_files.iter().map(geometry_line).collect(),
     })
 }
 
@@ -233,6 +236,11 @@ fn directives(model: &Model) -> Vec<String> {
     let averaging = model.averaging;
     let averaging = (averaging != Averaging::Cells).then(|| format!("{DIRECTIVE} averaging {}", averaging.name()));
     order.into_iter().chain(averaging).collect()
+}
+
+fn geometry_line(asked: &GeometryFile) -> String {
+    let [lower, upper] = [asked.lower, asked.upper].map(|corner| corner.map(number).join(" "));
+    format!("#geometry_objects_write: {lower} {upper} {}", asked.file)
 }
 
 fn steps(steps: [f64; 3]) -> Vec<String> {
@@ -408,6 +416,7 @@ fn check(model: &Model) -> Result<(), WriteError> {
             value("relaxation time", pole.tau, pole.tau > 0.0 && pole.tau.is_finite(), "finite and above 0")?;
         }
     }
+    model.geometry_files.iter().try_for_each(|asked| named("geometry file", &asked.file, &[]))?;
     model.waveforms.iter().try_for_each(|waveform| named("waveform", &waveform.id, &[]))?;
     model
         .receivers
