@@ -212,10 +212,11 @@ impl Survey<'_> {
 
     fn components(&self) -> Effect {
         let reason = match self.model.route() {
-            Route::Space { why } => Ok(why),
+            Route::Space { why } if self.model.invariant_axis().is_some() => Ok(format!("{why}; three components")),
+            Route::Space { why } => Ok(format!("{why}; all six components")),
             Route::Plane => Err("two-dimensional along z: Ez, Hx and Hy"),
         };
-        self.effect("all six components", reason, 0, self.edges)
+        self.effect("solver for three dimensions", reason, 0, self.edges)
     }
 }
 

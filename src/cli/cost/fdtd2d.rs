@@ -134,14 +134,12 @@ fn figure(table: &CostTable) -> Chart {
         (Smoothing::Shapes, "true shapes"),
     ];
     for (index, (kind, name)) in kinds.into_iter().enumerate() {
-        for (order, style) in [(Order::Second, Stroke::Points), (Order::Fourth, Stroke::LineAndPoints)] {
+        for (order, style) in [(Order::Second, Stroke::Dashed), (Order::Fourth, Stroke::LineAndPoints)] {
             let of = |p: &CostSetting| p.smoothing == kind && p.order == order && !p.double_precision;
             let points = table.points.iter().filter(|point| of(&point.setting));
             let points: Vec<(f64, f64)> = points.map(|point| (point.seconds, 100.0 * point.error)).collect();
             let label = format!("{name}, order {order}");
-            chart
-                .series
-                .push(Series::line(&label, points).drawn(style, index + 4 * usize::from(order == Order::Second)));
+            chart.series.push(Series::line(&label, points).drawn(style, index));
         }
     }
     for point in table.points.iter().filter(|p| {
