@@ -15,8 +15,10 @@ use crate::model::{self, Grid, Material, Model, Object, TimeWindow};
 use crate::plot::{Axis, Chart, Figure as _, Series, Stroke};
 use crate::study::fit_exponent;
 
-/// Cell-steps of one measurement: half a second or less.
+/// Cell-steps of one measurement: about half a second.
 const CELL_STEPS: usize = 300_000_000;
+/// Fewest steps: touching the memory for the first time is to be a small part.
+const LEAST_STEPS: usize = 80;
 /// Runs of each grid, of which the median counts.
 const RUNS: usize = 5;
 /// Grids on a plane, 3:2 as a section of a bed is.
@@ -66,7 +68,7 @@ fn solve(fdtd: &Fdtd, model: &Model) -> Result<Stats, CliError> {
 fn measure(cells: [usize; 3], bandwidth: f64) -> Result<Point, CliError> {
     let dimensions = if cells[2] == 1 { 2 } else { 3 };
     let all: usize = cells.iter().product();
-    let steps = (CELL_STEPS / all).clamp(16, 20_000);
+    let steps = (CELL_STEPS / all).clamp(LEAST_STEPS, 20_000);
     let model = block(cells, steps + 1);
     let runs: Result<Vec<Stats>, CliError> = (0..RUNS).map(|_| solve(&Fdtd::default(), &model)).collect();
     let mut runs = runs?;
