@@ -39,7 +39,7 @@ impl Edge {
 /// # Errors
 /// Materials on the grid that the plane does not know: magnetic ones, those that ring, and those with more than three poles.
 pub fn edges(model: &Model, painted: &Painted) -> Result<Vec<Edge>, FdtdError> {
-    let present = painted.cells_per_material(model.materials.len());
+    let present = model.acting(painted.cells_per_material(model.materials.len()));
     for (material, _) in model.materials.iter().zip(present).filter(|(_, cells)| *cells > 0) {
         check_material(material)?;
     }

@@ -67,11 +67,12 @@ pub(super) fn average_shapes(model: &Model, painted: &mut Painted) -> Result<(),
     let [dx, dy, _] = model.grid.spacing;
     let whole = vec![MaterialId::FREE_SPACE; 4 * nx * ny];
     let mut quarters = Quarters { half: [0.5 * dx, 0.5 * dy], count: [2 * nx, 2 * ny], whole, mixed: HashMap::new() };
+    let along_z = |id: MaterialId| model.materials.get(id.index()).map_or(id, |material| material.along(2, id));
     for (index, object) in model.objects.iter().enumerate() {
         match *object {
-            Object::Box { lower, upper, material, .. } => quarters.rectangle(lower, upper, material),
+            Object::Box { lower, upper, material, .. } => quarters.rectangle(lower, upper, along_z(material)),
             Object::Cylinder { start, end, radius, material, .. } if start[..2] == end[..2] => {
-                quarters.disc([start[0], start[1]], radius, material);
+                quarters.disc([start[0], start[1]], radius, along_z(material));
             }
             _ => return Err(PaintError::NoShare { number: index + 1 }),
         }

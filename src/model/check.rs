@@ -111,7 +111,8 @@ impl Resolution {
     fn of_present(model: &Model, present: Vec<usize>) -> Option<Self> {
         let highest = |source: &super::Source| model.waveforms.get(source.waveform())?.highest_frequency();
         let frequency = model.sources.iter().filter_map(highest).max_by(f64::total_cmp)?;
-        let candidates = model.materials.iter().zip(present).filter(|(m, cells)| *cells > 0 && !m.is_pec());
+        let candidates =
+            model.materials.iter().zip(model.acting(present)).filter(|(m, cells)| *cells > 0 && !m.is_pec());
         let of = |m: &super::Material| (m.id.clone(), m.eps_r_at(frequency) * m.mu_r);
         let (material, eps_r) = candidates.map(|(m, _)| of(m)).max_by(|a, b| a.1.total_cmp(&b.1))?;
         let wavelength = C0 / (frequency * eps_r.sqrt());

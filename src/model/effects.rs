@@ -82,7 +82,8 @@ impl Effects {
 
 /// The materials that any cell holds.
 fn present(model: &Model, cells: Vec<usize>) -> Vec<&Material> {
-    model.materials.iter().zip(cells).filter(|(_, cells)| *cells > 0).map(|(material, _)| material).collect()
+    let acting = model.materials.iter().zip(model.acting(cells));
+    acting.filter(|(m, cells)| *cells > 0 && m.directional.is_none()).map(|(material, _)| material).collect()
 }
 
 /// What the effects are read off: the materials on the grid and what lies on its edges.

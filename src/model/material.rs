@@ -94,6 +94,9 @@ pub struct Material {
     /// Whether edges between this and another material may take the mean of both. False for a perfect conductor, for
     /// dispersive materials, and for those that a material database marks so.
     pub averagable: bool,
+    /// The materials along x, y and z of a direction-dependent material, of which the fields above are the mean: an edge or face takes the one of
+    /// its own axis.
+    pub directional: Option<[MaterialId; 3]>,
 }
 
 impl Material {
@@ -108,6 +111,7 @@ impl Material {
             poles: vec![],
             resonances: vec![],
             averagable: false,
+            directional: None,
         }
     }
 
@@ -127,7 +131,13 @@ impl Material {
             poles: vec![],
             resonances: vec![],
             averagable: true,
+            directional: None,
         }
+    }
+
+    /// The material of edges along an axis, and of faces across it; `own` is its own place in the list of materials.
+    pub fn along(&self, axis: usize, own: MaterialId) -> MaterialId {
+        self.directional.map_or(own, |materials| materials[axis])
     }
 
     /// Whether this is a perfect electric conductor.

@@ -40,7 +40,7 @@ pub use order::{NoSuchOrder, Order};
 pub use paint::{PaintError, check_grid, check_two_dimensional, paint, paint3};
 pub use painted::Painted;
 pub use painted3::Painted3;
-pub use palette::{EdgeMaterial, FaceMaterial};
+pub use palette::{EdgeMaterial, FaceMaterial, MagneticAveraging};
 pub use route::{MOST_POLES_IN_A_PLANE, Route};
 pub use sampled::{Between, Beyond, Sampled};
 pub use source::{Axis, Excitation, HertzianDipole, MagneticDipole, Receiver, Source, VoltageSource};

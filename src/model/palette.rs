@@ -40,10 +40,37 @@ pub struct FaceMaterial {
     pub sigma_magnetic: f64,
 }
 
+/// How a face between two magnetic materials gets its values (`#magnetic_averaging`).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum MagneticAveraging {
+    /// The harmonic mean; without loss where either material has none.
+    #[default]
+    Harmonic,
+    /// The arithmetic mean.
+    Arithmetic,
+}
+
+impl MagneticAveraging {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Harmonic, Self::Arithmetic];
+
+    /// The word of `#magnetic_averaging`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Harmonic => "harmonic",
+            Self::Arithmetic => "arithmetic",
+        }
+    }
+}
+
 impl FaceMaterial {
-    /// The harmonic mean of the two cells that share the face; without loss where either has none.
-    pub(super) fn between(a: &Material, b: &Material) -> Self {
-        let mean = |a: f64, b: f64| if a == b { a } else { 2.0 * a * b / (a + b) };
+    /// The mean of the two cells that share the face.
+    pub(super) fn between(a: &Material, b: &Material, how: MagneticAveraging) -> Self {
+        let mean = |a: f64, b: f64| match how {
+            _ if a == b => a,
+            MagneticAveraging::Harmonic => 2.0 * a * b / (a + b),
+            MagneticAveraging::Arithmetic => (a + b) / 2.0,
+        };
         Self { mu_r: mean(a.mu_r, b.mu_r), sigma_magnetic: mean(a.sigma_magnetic, b.sigma_magnetic) }
     }
 }

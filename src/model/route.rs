@@ -37,7 +37,15 @@ impl Model {
     /// What a model along z asks for that the plane does not know.
     fn beyond_the_plane(&self) -> Option<String> {
         // Whatever an object is made of counts, whether or not a cell of it stays after painting.
-        let used = |index: usize| self.objects.iter().any(|object| object.holds(MaterialId(index as u16)));
+        let holds = |id: MaterialId| self.objects.iter().any(|object| object.holds(id));
+        let directional =
+            self.materials.iter().zip(0..).filter_map(|(m, whole)| Some((m.directional?, MaterialId(whole))));
+        let parts: Vec<MaterialId> =
+            directional.filter(|(_, whole)| holds(*whole)).flat_map(|(along, _)| along).collect();
+        let used = |index: usize| {
+            let id = MaterialId(index as u16);
+            holds(id) || parts.contains(&id)
+        };
         if !self.absorbing_profile.fits_a_plane() {
             return Some(
                 "the profile of the absorbing boundary is more than one stretch that begins with nothing".into(),

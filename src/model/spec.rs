@@ -1,8 +1,8 @@
 //! The model itself.
 
 use super::{
-    AbsorbingProfile, Averaging, Axis, GeometryFile, Grid, Material, MaterialId, Object, Order, Receiver, Source,
-    Waveform,
+    AbsorbingProfile, Averaging, Axis, GeometryFile, Grid, MagneticAveraging, Material, MaterialId, Object, Order,
+    Receiver, Source, Waveform,
 };
 
 /// How long to simulate.
@@ -42,6 +42,8 @@ pub struct Model {
     pub materials: Vec<Material>,
     /// Whether edges between dispersive materials take the mean of both, poles included (`#dispersive_averaging`).
     pub dispersive_averaging: bool,
+    /// How a face between two magnetic materials gets its values (`#magnetic_averaging`).
+    pub magnetic_averaging: MagneticAveraging,
     /// Waveforms that sources refer to.
     pub waveforms: Vec<Waveform>,
     /// Objects, painted in order.
@@ -74,6 +76,7 @@ impl Model {
             threads: None,
             materials: vec![Material::pec(), Material::free_space()],
             dispersive_averaging: false,
+            magnetic_averaging: MagneticAveraging::default(),
             waveforms: vec![],
             objects: vec![],
             sources: vec![],
@@ -88,6 +91,37 @@ impl Model {
     pub fn add_material(&mut self, material: Material) -> MaterialId {
         self.materials.push(material);
         MaterialId((self.materials.len() - 1) as u16)
+    }
+
+    /// The material that consists of one material along each axis, which is added where there is none yet.
+    ///
+    /// Its own values are the means of the three: the cells that hold it count with them for the absorbing boundary.
+    pub fn add_directional(&mut self, along: [MaterialId; 3]) -> MaterialId {
+        if let Some(known) = self.materials.iter().position(|material| material.directional == Some(along)) {
+            return MaterialId(known as u16);
+        }
+        let parts = along.map(|id| &self.materials[id.index()]);
+        let mean = |of: fn(&Material) -> f64| parts.iter().map(|part| of(part)).sum::<f64>() / 3.0;
+        self.add_material(Material {
+            id: parts.map(|part| part.id.as_str()).join("+"),
+            mu_r: mean(|m| m.mu_r),
+            sigma_magnetic: mean(|m| m.sigma_magnetic),
+            averagable: false,
+            directional: Some(along),
+            ..Material::dielectric("", mean(|m| m.eps_r), mean(|m| m.sigma))
+        })
+    }
+
+    /// How many cells each material acts in, from how many hold it: those of a direction-dependent material count for each of
+    /// its three.
+    pub fn acting(&self, mut cells: Vec<usize>) -> Vec<usize> {
+        for (index, material) in self.materials.iter().enumerate() {
+            let own = cells[index];
+            for part in material.directional.into_iter().flatten() {
+                cells[part.index()] += own;
+            }
+        }
+        cells
     }
 
     /// The model of one trace of a B-scan, counted from 0: sources and receivers moved by so many steps.

@@ -176,8 +176,8 @@ fn errors_name_the_line_and_what_to_do() {
         "FILE line 5: the material `stine` is not defined\n\nhint: did you mean `stone`?"
     );
     assert_eq!(
-        error("#material: 6 0 1 0 a\n#box: 0 0 0 0.4 0.1 0.002 a a a"),
-        "FILE line 5: a direction-dependent material (three identifiers) of `#box` is not supported by the embedded solver\n\nhint: `--solver gprmax` runs the file in gprMax itself"
+        error("#material: 6 0 1 0 a\n#box: 0 0 0 0.4 0.1 0.002 a a pec"),
+        "FILE line 5: a perfect conductor among three identifiers of `#box` is not supported by the embedded solver\n\nhint: `--solver gprmax` runs the file in gprMax itself"
     );
     assert_eq!(
         error("#material: 0.5 0 1 0 a"),
@@ -344,7 +344,7 @@ proptest! {
 }
 
 /// Shapes that cannot be. gprMax 4.0.1 was seen to refuse the negative thickness, the cone in a plane, and the plates and
-/// edges with wrong or turned extents; a plate may have two materials there, but not here.
+/// edges with wrong or turned extents.
 #[test]
 fn shapes_that_cannot_be_are_refused_by_line() {
     for (line, said) in [
@@ -359,7 +359,12 @@ fn shapes_that_cannot_be_are_refused_by_line() {
         ("#plate: 0.1 0.1 0 0.1 0.1 0.002 pec", "the number of axes along which it has no extent"),
         ("#plate: 0.1 0.1 0 0.2 0.2 0.002 pec", "the number of axes along which it has no extent"),
         ("#plate: 0.1 0.2 0 0.1 0.1 0.002 pec", "0.2 m"),
-        ("#plate: 0.1 0.1 0 0.1 0.2 0.002 pec free_space", "a direction-dependent material"),
+        ("#plate: 0.1 0.1 0 0.1 0.2 0.002 pec free_space pec", "parameters"),
+        ("#box: 0.1 0.1 0 0.2 0.2 0.002 free_space free_space free_space tag", "one word behind three identifiers"),
+        ("#magnetic_averaging: geometric", "harmonic, arithmetic"),
+        ("#symmetry_boundary: x0 pmc", "a perfect magnetic conductor"),
+        ("#symmetry_boundary: z0 pec", "along which nothing changes"),
+        ("#symmetry_boundary: w0 pec", "x0, y0, z0, xmax, ymax, zmax"),
         ("#edge: 0.1 0.1 0 0.1 0.1 0 pec", "the number of axes along which it has an extent"),
         ("#edge: 0.1 0.1 0 0.2 0.2 0 pec", "the number of axes along which it has an extent"),
         ("#edge: 0.1 0.1 0 0.2 0.1 0 nothing", "nothing"),

@@ -303,7 +303,17 @@ fn material(index: usize) -> impl Strategy<Value = Material> {
             let poles = if sigma.is_infinite() { vec![] } else { poles };
             let averagable = averagable && sigma.is_finite() && poles.is_empty();
             let id = format!("m.{index}-é");
-            Material { id, eps_r, sigma, mu_r, sigma_magnetic, poles, resonances: vec![], averagable }
+            Material {
+                id,
+                eps_r,
+                sigma,
+                mu_r,
+                sigma_magnetic,
+                poles,
+                resonances: vec![],
+                averagable,
+                directional: None,
+            }
         },
     )
 }

@@ -68,7 +68,7 @@ impl<'a> Setup3<'a> {
     /// Whatever the solver cannot do, naming it.
     pub fn new(model: &Model, painted: Cow<'a, Painted3>) -> Result<Self, FdtdError> {
         check_model(model)?;
-        let present = painted.cells_per_material(model.materials.len());
+        let present = model.acting(painted.cells_per_material(model.materials.len()));
         for (material, _) in model.materials.iter().zip(present).filter(|(_, cells)| *cells > 0) {
             check_electric(material)?;
             check_resonances(material, model.time_step())?;

@@ -63,6 +63,7 @@ impl Turn {
             threads: model.threads,
             materials: model.materials.clone(),
             dispersive_averaging: model.dispersive_averaging,
+            magnetic_averaging: model.magnetic_averaging,
             waveforms: model.waveforms.clone(),
             objects: vec![],
             sources: model.sources.iter().map(source).collect(),

@@ -181,7 +181,17 @@ impl Database {
         let averagable =
             entry.averagable.unwrap_or(true) && poles.is_empty() && sigma.is_finite() && sigma_magnetic.is_finite();
         let (eps_r, mu_r) = (base.relative_permittivity, base.relative_permeability);
-        Ok(Material { id, eps_r, sigma, mu_r, sigma_magnetic, poles, resonances: vec![], averagable })
+        Ok(Material {
+            id,
+            eps_r,
+            sigma,
+            mu_r,
+            sigma_magnetic,
+            poles,
+            resonances: vec![],
+            averagable,
+            directional: None,
+        })
     }
 
     fn check(

@@ -34,6 +34,26 @@ pub(super) fn stretch(model: &mut Model, command: &Command<'_>) -> Result<(), Pr
     Ok(())
 }
 
+/// Reads a `#symmetry_boundary`: the outer walls conduct perfectly in any case, so a plane on which the electric field stands
+/// upright is a side without absorbing cells.
+pub(super) fn symmetry(model: &mut Model, command: &Command<'_>) -> Result<(), Problem> {
+    const FACES: [&str; 6] = ["x0", "y0", "z0", "xmax", "ymax", "zmax"];
+    let p = Parameters::of(command, "x0|y0|z0|xmax|ymax|zmax pec|pmc", |n| n == 2)?;
+    let (face, kind) = (p.word(0)?.to_lowercase(), p.word(1)?.to_lowercase());
+    let side = FACES.iter().position(|known| *known == face);
+    let side = side.ok_or_else(|| p.not_one_of(p.word(0).unwrap_or(""), "a face", FACES.join(", ")))?;
+    match kind.as_str() {
+        "pec" if model.invariant_axis() != Some(side % 3) => {}
+        "pec" => return Err(p.unsupported("a face across the axis along which nothing changes")),
+        "pmc" => return Err(p.unsupported("a perfect magnetic conductor")),
+        _ => return Err(p.not_one_of(p.word(1)?, "a kind of symmetry", "pec, pmc".into())),
+    }
+    let mut cells = model.absorbing_cells();
+    cells[side] = 0;
+    model.pml_cells = Some(cells);
+    Ok(())
+}
+
 fn grading(p: &Parameters<'_>, first: usize, may_be_chosen: bool) -> Result<Grading, Problem> {
     let word = p.word(first)?;
     let order = Grading::ORDERS.iter().position(|known| *known == word.to_lowercase());

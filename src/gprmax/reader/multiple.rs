@@ -76,6 +76,7 @@ fn material(model: &mut Model, command: &Command<'_>) -> Result<(), Problem> {
         poles: vec![],
         resonances: vec![],
         averagable,
+        directional: None,
     });
     Ok(())
 }
@@ -177,7 +178,9 @@ fn sphere(model: &mut Model, command: &Command<'_>) -> Result<(), Problem> {
 }
 
 /// The material of an object and its averaging flag, from parameter `first` on; a tag may stand behind the flag.
-pub(super) fn stuff(model: &Model, p: &Parameters<'_>, first: usize) -> Result<(MaterialId, bool), Problem> {
+/// Three identifiers are the materials along x, y and z, which are never averaged; behind them may stand a flag, which means
+/// nothing, together with a tag.
+pub(super) fn stuff(model: &mut Model, p: &Parameters<'_>, first: usize) -> Result<(MaterialId, bool), Problem> {
     let is_flag = |index: usize| p.word(index).is_ok_and(|word| matches!(word, "y" | "Y" | "n" | "N"));
     match p.len() - first {
         1 => Ok((material_id(model, p, p.word(first)?)?, true)),
@@ -185,8 +188,32 @@ pub(super) fn stuff(model: &Model, p: &Parameters<'_>, first: usize) -> Result<(
         3 if is_flag(first + 1) => {
             Ok((material_id(model, p, p.word(first)?)?, p.yes_or_no(first + 1, "an averaging flag")?))
         }
-        _ => Err(p.unsupported("a direction-dependent material (three identifiers)")),
+        4 => Err(p.unsupported("one word behind three identifiers (gprMax refuses it too)")),
+        words => {
+            if words == 5 {
+                p.yes_or_no(first + 3, "an averaging flag")?;
+            }
+            let along = [first, first + 1, first + 2].map(|index| material_id(model, p, p.word(index)?));
+            let [x, y, z] = along;
+            let along = [x?, y?, z?];
+            if along.iter().any(|id| model.materials[id.index()].is_pec()) {
+                return Err(p.unsupported("a perfect conductor among three identifiers"));
+            }
+            Ok((directional(model, p, along)?, false))
+        }
     }
+}
+
+/// The material that has one material along each axis.
+pub(super) fn directional(
+    model: &mut Model,
+    p: &Parameters<'_>,
+    along: [MaterialId; 3],
+) -> Result<MaterialId, Problem> {
+    if model.materials.len() >= usize::from(u16::MAX) {
+        return Err(p.unsupported("the 65536th material"));
+    }
+    Ok(model.add_directional(along))
 }
 
 fn geometry_objects_read(model: &mut Model, path: &Path, command: &Command<'_>) -> Result<(), Problem> {

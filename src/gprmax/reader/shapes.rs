@@ -2,7 +2,7 @@
 
 use super::error::Problem;
 use super::lines::Command;
-use super::multiple::{inside, material_id, stuff};
+use super::multiple::{directional, inside, material_id, stuff};
 use super::values::Parameters;
 use crate::model::{Axis, Model, Object};
 
@@ -76,14 +76,18 @@ pub(super) fn sector(model: &mut Model, command: &Command<'_>) -> Result<(), Pro
 }
 
 pub(super) fn plate(model: &mut Model, command: &Command<'_>) -> Result<(), Problem> {
-    let p = Parameters::of(command, "X1 Y1 Z1 X2 Y2 Z2 MATERIAL", |n| (7..=8).contains(&n))?;
-    if p.len() == 8 {
-        return Err(p.unsupported("a direction-dependent material (two identifiers)"));
-    }
+    let p = Parameters::of(command, "X1 Y1 Z1 X2 Y2 Z2 MATERIAL [MATERIAL]", |n| n == 7 || n == 8)?;
     let (lower, upper) = ends(model, &p, "corner of the plate")?;
     let flat = extents(model, lower, upper).into_iter().filter(|&cells| cells == 0).count();
     p.check("the number of axes along which it has no extent", flat as f64, flat == 1, "1")?;
-    let material = material_id(model, &p, p.word(6)?)?;
+    let mut material = material_id(model, &p, p.word(6)?)?;
+    if p.len() == 8 {
+        // The materials along the first and along the second of its axes; nothing of it lies along the third.
+        let second = material_id(model, &p, p.word(7)?)?;
+        let across = extents(model, lower, upper).iter().position(|&cells| cells == 0);
+        let along = [[second, material, second], [material, second, second], [material, second, second]];
+        material = directional(model, &p, along[across.unwrap_or(2)])?;
+    }
     model.objects.push(Object::Plate { lower, upper, material });
     Ok(())
 }

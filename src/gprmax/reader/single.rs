@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use super::boundary::formulation;
+use super::boundary::{formulation, symmetry};
 use super::directives::Directives;
 use super::error::{InFileError, Problem};
 use super::lines::Command;
 use super::values::Parameters;
-use crate::model::{Axis, Grid, Model, TimeWindow, ceil_half_down};
+use crate::model::{Axis, Grid, MagneticAveraging, Model, TimeWindow, ceil_half_down};
 
 /// `#domain_mode`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,6 +58,9 @@ pub(super) fn start(path: &Path, commands: &[Command<'_>], asked: Directives) ->
         let on = Parameters::of(command, "y|n", |n| n == 1).and_then(|p| p.yes_or_no(0, "a flag"));
         model.dispersive_averaging = on.map_err(at(command))?;
     }
+    if let Some(command) = find("magnetic_averaging") {
+        model.magnetic_averaging = magnetic_averaging(command).map_err(at(command))?;
+    }
     if let Some(command) = find("src_steps") {
         model.source_steps = steps(command).map_err(at(command))?;
     }
@@ -67,11 +70,24 @@ pub(super) fn start(path: &Path, commands: &[Command<'_>], asked: Directives) ->
     if let Some(command) = find("pml_formulation") {
         model.absorbing_profile.formulation = formulation(command).map_err(at(command))?;
     }
-    match find("pml_cells") {
-        Some(command) => model.pml_cells = Some(pml_cells(command, &grid).map_err(at(command))?),
-        None => check_default_pml(path, &model)?,
+    let sides = find("pml_cells");
+    if let Some(command) = sides {
+        model.pml_cells = Some(pml_cells(command, &grid).map_err(at(command))?);
+    }
+    for command in commands.iter().filter(|command| command.name == "symmetry_boundary") {
+        symmetry(&mut model, command).map_err(at(command))?;
+    }
+    if sides.is_none() {
+        check_default_pml(path, &model)?;
     }
     Ok(model)
+}
+
+fn magnetic_averaging(command: &Command<'_>) -> Result<MagneticAveraging, Problem> {
+    let p = Parameters::of(command, "harmonic|arithmetic", |n| n == 1)?;
+    let word = p.word(0)?;
+    let found = MagneticAveraging::ALL.into_iter().find(|known| known.name() == word);
+    found.ok_or_else(|| p.not_one_of(word, "a mean", MagneticAveraging::ALL.map(MagneticAveraging::name).join(", ")))
 }
 
 fn steps(command: &Command<'_>) -> Result<[f64; 3], Problem> {
@@ -172,8 +188,9 @@ fn pml_cells(command: &Command<'_>, grid: &Grid) -> Result<[usize; 6], Problem> 
 fn check_default_pml(path: &Path, model: &Model) -> Result<(), InFileError> {
     let layers = model.absorbing_cells();
     for axis in [Axis::X, Axis::Y, Axis::Z] {
-        let (layer, cells) = (layers[axis.index()], model.grid.cells[axis.index()]);
-        if 2 * layer >= cells {
+        let (low, high, cells) = (layers[axis.index()], layers[axis.index() + 3], model.grid.cells[axis.index()]);
+        let layer = low.max(high);
+        if low + high >= cells {
             return Err(InFileError::DefaultPml { path: path.into(), axis: axis.name(), cells, layer });
         }
     }

@@ -13,8 +13,8 @@ use super::pulse_files::{PulseFiles, sampled};
 use super::voxel_files::{VoxelFiles, command_safe};
 use crate::files::write_bytes;
 use crate::model::{
-    Averaging, Beyond, Formulation, GeometryFile, Grading, Material, MaterialId, Model, Object, Order, Resonance,
-    Source, Stretch, TimeWindow, VoltageSource,
+    Averaging, Beyond, Formulation, GeometryFile, Grading, MagneticAveraging, Material, MaterialId, Model, Object,
+    Order, Resonance, Source, Stretch, TimeWindow, VoltageSource,
 };
 
 /// The template that is built in.
@@ -25,7 +25,7 @@ pub const DEFAULT_TEMPLATE: &str = include_str!("../../../templates/model.in");
 /// A template is one of minijinja (Jinja2). It sees texts `generator`, `title`, `domain_mode`, `time_window`, `time_step`,
 /// `stability_factor`, `threads`; lists `domain`, `spacing`, `cells`, `pml_cells`, `pml_cfs` (finished); the text `pml_formulation`; the number `iterations`; `materials` (each
 /// `builtin`, `id`, `eps_r`, `sigma`, `mu_r`, `sigma_magnetic`, `poles` with `delta_eps`, `tau`, `resonance`, `resonances`), the flag
-/// `dispersive_averaging`, `waveforms` (`kind`, `amplitude`,
+/// `dispersive_averaging`, the text `magnetic_averaging`, `waveforms` (`kind`, `amplitude`,
 /// `frequency`, `id`; `file`, `between`, `beyond` of pulses given as samples), `sources` (`command`, `polarisation`, `position`, `resistance`,
 /// `waveform`, `start`, `stop`), `receivers` (`position`, `name`),
 /// lists `source_steps`, `receiver_steps`, and `objects` and `geometry_files`, the finished lines. What is not given is an empty text or list; a name that does not exist is an error.
@@ -56,6 +56,8 @@ struct Page {
     threads: String,
     materials: Vec<MaterialLine>,
     dispersive_averaging: bool,
+    /// Empty for gprMax's default.
+    magnetic_averaging: &'static str,
     waveforms: Vec<WaveformLine>,
     sources: Vec<SourceLine>,
     receivers: Vec<ReceiverLine>,
@@ -201,6 +203,10 @@ fn page(model: &Model, voxels: &VoxelFiles<'_>, pulses: &PulseFiles<'_>) -> Resu
         threads: model.threads.map_or(String::new(), |count| count.to_string()),
         materials: materials(model, voxels),
         dispersive_averaging: model.dispersive_averaging,
+        magnetic_averaging: match model.magnetic_averaging {
+            MagneticAveraging::Harmonic => "",
+            arithmetic => arithmetic.name(),
+        },
         waveforms: model
             .waveforms
             .iter()
@@ -264,7 +270,7 @@ fn materials(model: &Model, voxels: &VoxelFiles<'_>) -> Vec<MaterialLine> {
         resonances: m.resonances.iter().map(resonance).collect(),
     };
     let listed = |(index, m): &(usize, &Material)| {
-        let own = *index > MaterialId::FREE_SPACE.index() && !voxels.only_in_voxels(*index);
+        let own = *index > MaterialId::FREE_SPACE.index() && m.directional.is_none() && !voxels.only_in_voxels(*index);
         own || (*index == MaterialId::FREE_SPACE.index() && m.is_dispersive())
     };
     model.materials.iter().enumerate().filter(listed).map(line).collect()
@@ -325,6 +331,9 @@ fn object_line(
     let stuff = |id: &MaterialId, averaging: bool| {
         let dangling = WriteError::Dangling { what: "material", index: id.index() };
         let material = model.materials.get(id.index()).ok_or(dangling)?;
+        if let Some(along) = material.directional {
+            return Ok(along.map(|id| model.materials[id.index()].id.as_str()).join(" "));
+        }
         // `#material` has no word for "not averaged"; the object's own flag says the same.
         let flag =
             if averaging && (material.averagable || material.is_pec() || material.is_dispersive()) { "y" } else { "n" };
@@ -364,7 +373,17 @@ fn object_line(
             Ok(Some(format!("#triangle: {corners} {} {}", number(*thickness), stuff(material, *averaging)?)))
         }
         Object::Plate { lower, upper, material } => {
-            Ok(Some(format!("#plate: {} {} {}", point(lower), point(upper), name(material)?)))
+            let along = model.materials.get(material.index()).and_then(|m| m.directional);
+            let stuff = match along {
+                Some(along) => {
+                    let node = |axis: usize, metres| model.grid.node(axis, metres);
+                    let flat = (0..3).find(|&axis| node(axis, lower[axis]) == node(axis, upper[axis]));
+                    let names = (0..3).filter(|&axis| Some(axis) != flat).map(|axis| name(&along[axis]));
+                    names.collect::<Result<Vec<_>, _>>()?.into_iter().map(String::as_str).collect::<Vec<_>>().join(" ")
+                }
+                None => name(material)?.clone(),
+            };
+            Ok(Some(format!("#plate: {} {} {stuff}", point(lower), point(upper))))
         }
         Object::Edge { lower, upper, material } => {
             Ok(Some(format!("#edge: {} {} {}", point(lower), point(upper), name(material)?)))
@@ -379,7 +398,7 @@ fn check(model: &Model) -> Result<(), WriteError> {
         let bad = id.is_empty() || id.contains(char::is_whitespace) || id.contains(extra);
         if bad { Err(WriteError::Identifier { what, id: id.into() }) } else { Ok(()) }
     };
-    for material in model.materials.iter().skip(2) {
+    for material in model.materials.iter().skip(2).filter(|material| material.directional.is_none()) {
         named("material", &material.id, &['+'])?;
         let value = |what: &str, value: f64, allowed: bool, limit: &'static str| {
             let what = format!("the {what} of `{}`", material.id);

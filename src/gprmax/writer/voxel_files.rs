@@ -47,6 +47,8 @@ impl<'a> VoxelFiles<'a> {
                 | Object::Plate { material, .. }
                 | Object::Edge { material, .. } => {
                     files.in_commands.insert(*material);
+                    let parts = model.materials.get(material.index()).and_then(|m| m.directional);
+                    files.in_commands.extend(parts.into_iter().flatten());
                 }
                 Object::Voxels(block) => {
                     let used = used(block);

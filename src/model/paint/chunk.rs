@@ -6,7 +6,7 @@ use super::claims::Claims;
 use super::layout::Layout;
 use super::settle::{Done, Settled, Settler};
 use super::solid::{Plane, Solid};
-use crate::model::{Material, MaterialId};
+use crate::model::{MagneticAveraging, Material, MaterialId};
 
 /// What all chunks share.
 pub struct Job<'a> {
@@ -16,6 +16,7 @@ pub struct Job<'a> {
     /// Whether each of them has filled a cell.
     pub filled: &'a [AtomicBool],
     pub faces_wanted: bool,
+    pub magnetic_averaging: MagneticAveraging,
 }
 
 /// The claims and rows of a plane.
@@ -29,7 +30,7 @@ impl Job<'_> {
     /// nodes before each of them; behind the grid's last plane one more.
     pub fn run(&self, first: usize, cells: &mut [MaterialId], solids: &[u32]) -> Settled {
         let (plane, count) = (self.layout.plane(), cells.len() / self.layout.plane());
-        let mut settler = Settler::new(self.layout, self.materials, self.faces_wanted);
+        let mut settler = Settler::new(self);
         let kept = || Kept { claims: Claims::new(self.layout, self.faces_wanted), even: vec![] };
         let (mut before, mut now) = (kept(), kept());
         let mut earlier = vec![];

@@ -1,8 +1,9 @@
 //! What lies on the edges and faces of a plane of nodes.
 
+use super::chunk::Job;
 use super::claims::{Claim, Claims, List, edge_flag, face_flag};
 use super::layout::Layout;
-use crate::model::palette::{FaceMaterial, Palette};
+use crate::model::palette::{FaceMaterial, MagneticAveraging, Palette};
 use crate::model::{EdgeMaterial, Indices, Material, MaterialId};
 
 /// A plane of cells that has been painted.
@@ -37,6 +38,7 @@ pub struct Settler<'a> {
     layout: Layout,
     materials: &'a [Material],
     faces_wanted: bool,
+    magnetic_averaging: MagneticAveraging,
     palette: Palette<'a>,
     known: Known,
     last_face: Option<([MaterialId; 2], u32)>,
@@ -94,11 +96,22 @@ impl<'a> Beside<'a> {
 
 impl<'a> Settler<'a> {
     /// Nothing settled yet.
-    pub fn new(layout: Layout, materials: &'a [Material], faces_wanted: bool) -> Self {
+    pub fn new(job: &Job<'a>) -> Self {
+        let Job { layout, materials, faces_wanted, magnetic_averaging, .. } = *job;
         let none = || std::array::from_fn(|_| Indices::with_capacity(0));
         let settled = Settled { palette: vec![], edges: none(), averaged: [0; 3], face_palette: vec![], faces: none() };
         let palette = Palette::new(materials);
-        Self { layout, materials, faces_wanted, palette, known: Known::new(), last_face: None, row: vec![], settled }
+        Self {
+            layout,
+            materials,
+            faces_wanted,
+            magnetic_averaging,
+            palette,
+            known: Known::new(),
+            last_face: None,
+            row: vec![],
+            settled,
+        }
     }
 
     /// What was settled.
@@ -145,7 +158,7 @@ impl<'a> Settler<'a> {
         let held = [a.held(), b.held()];
         let claims = held.iter().any(Option::is_some);
         if let Some(id) = a.even.filter(|_| !claims && a.even == b.even) {
-            let entry = self.palette.pure(id);
+            let entry = self.pure(axis, id);
             self.settled.edges[axis].push_run(entry, cells + 1);
             return;
         }
@@ -165,10 +178,10 @@ impl<'a> Settler<'a> {
         let mut below = two(a.solid[0], b.solid[0]);
         for (k, ((out, a), b)) in row.iter_mut().zip(a.solid).zip(b.solid).enumerate() {
             let above = two(*a, *b);
-            *out = self.edge(*out, below << 32 | above, lists, k, &mut averaged);
+            *out = self.edge(axis, *out, below << 32 | above, lists, k, &mut averaged);
             below = above;
         }
-        row[cells] = self.edge(row[cells], below << 32 | below, lists, cells, &mut averaged);
+        row[cells] = self.edge(axis, row[cells], below << 32 | below, lists, cells, &mut averaged);
         self.settled.averaged[axis] += if in_grid { averaged } else { 0 };
         self.settled.edges[axis].extend(&row);
         self.row = row;
@@ -181,7 +194,7 @@ impl<'a> Settler<'a> {
         let held = all.map(|beside| beside.held());
         let claims = held.iter().any(Option::is_some);
         if let Some(id) = a.even.filter(|_| !claims && all.iter().all(|beside| beside.even == a.even)) {
-            let entry = self.palette.pure(id);
+            let entry = self.pure(2, id);
             self.settled.edges[2].push_run(entry, cells + 1);
             return;
         }
@@ -194,7 +207,7 @@ impl<'a> Settler<'a> {
         let mut averaged = 0;
         let around = a.solid.iter().zip(b.solid).zip(c.solid).zip(d.solid);
         for (k, (out, (((a, b), c), d))) in row.iter_mut().zip(around).enumerate() {
-            *out = self.edge(*out, two(*a, *b) << 32 | two(*c, *d), lists, k, &mut averaged);
+            *out = self.edge(2, *out, two(*a, *b) << 32 | two(*c, *d), lists, k, &mut averaged);
         }
         row[cells] = row[cells - 1];
         self.settled.averaged[2] += averaged;
@@ -212,12 +225,26 @@ impl<'a> Settler<'a> {
 
     /// The entry of the edge at place `k` of a row: of its last claimant, or else of the four cells around it.
     #[inline(always)]
-    fn edge(&mut self, mark: u32, key: u64, lists: [Option<(&List, usize)>; 2], k: usize, averaged: &mut usize) -> u32 {
+    fn edge(
+        &mut self,
+        axis: usize,
+        mark: u32,
+        key: u64,
+        lists: [Option<(&List, usize)>; 2],
+        k: usize,
+        averaged: &mut usize,
+    ) -> u32 {
         if mark == CLAIMED {
             let cells = self.layout.n[2];
-            return self.palette.pure(latest(lists, cells, k).material);
+            return self.pure(axis, latest(lists, cells, k).material);
         }
         self.entry(key, averaged)
+    }
+
+    /// The entry of an edge along an axis of the layout that is made of one material.
+    fn pure(&mut self, axis: usize, id: MaterialId) -> u32 {
+        let along = self.materials[id.index()].along(self.layout.axes()[axis], id);
+        self.palette.pure(along)
     }
 
     /// The entry of an edge that nobody claims, from the four cells around it.
@@ -274,7 +301,8 @@ impl<'a> Settler<'a> {
                     } else {
                         sides.map(|(done, j, k, _)| done.solid[j * cells + k])
                     };
-                    let entry = self.face_entry(ids);
+                    let entry =
+                        self.face_entry(ids.map(|id| self.materials[id.index()].along(self.layout.axes()[axis], id)));
                     self.settled.faces[axis].push(entry);
                 }
             }
@@ -286,7 +314,7 @@ impl<'a> Settler<'a> {
             return entry;
         }
         let [a, b] = ids.map(|id| &self.materials[id.index()]);
-        let face = FaceMaterial::between(a, b);
+        let face = FaceMaterial::between(a, b, self.magnetic_averaging);
         let entries = &mut self.settled.face_palette;
         let entry = entries.iter().position(|known| *known == face).unwrap_or_else(|| {
             entries.push(face);

@@ -333,3 +333,29 @@ proptest! {
         }
     }
 }
+
+/// An edge takes the material of its own axis, whoever of the cells around it claims it; gprMax's `/ID` of the same scene holds
+/// 48 edges of each of the three and 36 faces.
+#[test]
+fn edges_of_a_directional_material_take_that_of_their_axis() {
+    let grid = Grid { cells: [10, 10, 10], spacing: [0.004; 3] };
+    let mut model = Model::new("", grid, TimeWindow::Iterations(1));
+    let values = [(4.0, 1.0), (6.0, 1.5), (9.0, 2.0)];
+    let along = values.map(|(eps_r, mu_r)| {
+        model.add_material(Material { mu_r, ..Material::dielectric(format!("m{eps_r}"), eps_r, 0.0) })
+    });
+    let material = model.add_directional(along);
+    assert_eq!(model.add_directional(along), material);
+    assert!((model.materials[material.index()].eps_r - 19.0 / 3.0).abs() < 1e-14);
+    let (lower, upper) = ([0.012; 3], [0.024; 3]);
+    model.objects.push(Object::Box { lower, upper, material, averaging: false });
+    let painted = paint3(&model).unwrap();
+    for (axis, (eps_r, mu_r)) in values.into_iter().enumerate() {
+        let edges = painted.edges[axis].to_vec().into_iter().map(|entry| painted.palette[entry as usize]);
+        let others: Vec<_> = edges.filter(|edge| edge.eps_r != 1.0).collect();
+        assert!(others.len() == 48 && others.iter().all(|edge| edge.eps_r == eps_r), "{axis}: {others:?}");
+        let faces = painted.faces[axis].to_vec().into_iter().map(|entry| painted.face_palette[entry as usize]);
+        let others = faces.filter(|face| face.mu_r == mu_r && mu_r != 1.0).count();
+        assert_eq!(others, if mu_r == 1.0 { 0 } else { 36 });
+    }
+}

@@ -78,7 +78,14 @@ impl Whole {
         let faces_wanted = !layout.flat && model.materials.iter().any(Material::is_magnetic);
         let per_chunk = layout.planes_per_chunk();
         let lists = by_chunk(&solids, layout.n[0].div_ceil(per_chunk), per_chunk);
-        let job = Job { layout, materials: &model.materials, solids: &solids, filled: &filled, faces_wanted };
+        let job = Job {
+            layout,
+            materials: &model.materials,
+            solids: &solids,
+            filled: &filled,
+            faces_wanted,
+            magnetic_averaging: model.magnetic_averaging,
+        };
         let mut solid = vec![MaterialId::FREE_SPACE; model.grid.cell_count()];
         let chunks: Vec<Settled> = solid
             .par_chunks_mut(per_chunk * layout.plane())
