@@ -26,11 +26,14 @@ fn input(steps: usize) -> String {
             0.012 + place(0.57, 0.07)
         );
     }
+    for step in [3, steps / 3, steps / 2, 3 * steps / 4, steps - 1] {
+        text += &format!("#snapshot: 0.02 0.02 0.02 0.1 0.1 0.1 0.008 0.008 0.008 {step} at_{step}.h5\n");
+    }
     text + "#box: 0.05 0.05 0.01 0.07 0.07 0.02 pec\n"
 }
 
 /// Killed while it steps or writes, with 1, 2 and 4 threads in turn, until it has been let alone: what it leaves is what an
-/// undisturbed run leaves, to the byte, and the checkpoint is gone.
+/// undisturbed run leaves, to the byte, snapshots included, and the checkpoint is gone.
 #[test]
 fn a_killed_run_goes_on_to_the_same_bytes() {
     for precision in ["single", "double"] {
@@ -62,8 +65,39 @@ fn a_killed_run_goes_on_to_the_same_bytes() {
         }
         assert!(went_on >= 1, "was never killed in time");
         assert!(fs::read(place.path("a.h5")).unwrap() == fs::read(place.path("plain.h5")).unwrap());
-        assert!(!place.path("a.h5.checkpoint").exists());
+        assert!(!place.path("a.h5.checkpoint").exists() && !place.path("a_snaps.partial").exists());
+        for step in [3, 300, 450, 675, 899] {
+            let [killed, plain] =
+                ["a", "plain"].map(|name| fs::read(place.path(&format!("{name}_snaps/at_{step}.h5"))).unwrap());
+            assert!(killed == plain, "snapshot of step {step}");
+        }
     }
+}
+
+/// A checkpoint without the snapshots that the run had taken by then is of no use.
+#[test]
+fn a_snapshot_that_went_missing_is_named() {
+    let place = Place::new();
+    place.write("a.in", input(900));
+    let mut child = Command::new(assert_cmd::cargo::cargo_bin("ballast-gpr"))
+        .args(["run", "a.in", "--checkpoint", "0s"])
+        .current_dir(place.path(""))
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    // The first checkpoint after the third snapshot is the one to go on from.
+    while !(place.path("a_snaps.partial/at_450.h5").exists() && place.path("a.h5.checkpoint").exists()) {
+        assert!(child.try_wait().unwrap().is_none(), "was never stopped in time");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    fs::remove_file(place.path("a_snaps.partial/at_3.h5")).unwrap();
+    let error = place.fails(&["run", "a.in"], 2);
+    assert!(error.contains("but snapshot 1, of step 3, is not there\n\nhint: begin anew with `--fresh`"), "{error}");
+    place.ok(&["run", "a.in", "--fresh"]);
+    assert!(place.path("a_snaps/at_3.h5").exists() && !place.path("a_snaps.partial").exists());
 }
 
 /// `--resume` wants a checkpoint, `--fresh` writes over whatever is there, and a file that is none is refused.

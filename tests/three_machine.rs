@@ -7,7 +7,9 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::time::Duration;
 
-use ballast_gpr::fdtd::{CheckpointEvent, Checkpoints, Fdtd, FdtdError, InstructionSet, Precision, predict_three};
+use ballast_gpr::fdtd::{
+    CheckpointEvent, Checkpoints, Fdtd, FdtdError, InstructionSet, Keeping, Precision, predict_three,
+};
 use ballast_gpr::model::{
     Axis, DebyePole, Excitation, Grid, HertzianDipole, Material, MaterialId, Model, Object, Receiver, Source,
     TimeWindow, Waveform, WaveformKind, paint3,
@@ -182,7 +184,7 @@ fn solve_kept(
     let checkpoints = Checkpoints { path, every, stop_after, go_on: true, tell: &tell };
     let fdtd = Fdtd { precision, threads: NonZeroUsize::new(threads), ..Fdtd::default() };
     let flow = if stop { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
-    let run = fdtd.solve_kept(model, &checkpoints, &|_| flow);
+    let run = fdtd.solve_kept(model, Keeping { checkpoints: Some(&checkpoints), snapshots: None }, &|_| flow);
     (run.map(|(traces, _)| traces), events.into_inner().unwrap())
 }
 

@@ -156,6 +156,7 @@ mod tests {
         let outcome = Outcome {
             target: "a".into(),
             result: "a/fdtd.h5".into(),
+            files: vec![],
             kept: true,
             record: crate::cli::folder::RunRecord {
                 format_version: 1,

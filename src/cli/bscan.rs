@@ -4,14 +4,14 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use crate::cli::checkpoint;
 use crate::cli::error::CliError;
 use crate::cli::folder::RunRecord;
 use crate::cli::geometry_files;
 use crate::cli::progress::Bar;
 use crate::cli::run::{Outcome, RunArgs, SolverName, built_in_solver, fingerprint, kept_or_refused, paths, record};
+use crate::cli::snapshots::{self, Album};
 use crate::cli::table::Report;
-use crate::fdtd::{Checkpoints, Fdtd, FdtdError, Stats};
+use crate::fdtd::{Fdtd, FdtdError, Keeping, Stats};
 use crate::forward::Progress;
 use crate::gprmax;
 use crate::model::{self, Model, Painted, Painted3, Resolution};
@@ -44,7 +44,7 @@ impl Geometry {
         &self,
         solver: &Fdtd,
         model: &Model,
-        checkpoints: Option<&Checkpoints<'_>>,
+        keeping: Keeping<'_>,
         bar: &Bar,
         done: usize,
         total: usize,
@@ -56,10 +56,7 @@ impl Geometry {
         };
         Ok(match self {
             Self::Two(painted) => solver.solve_painted(model, painted, &on_progress)?,
-            Self::Three(painted) => match checkpoints {
-                Some(checkpoints) => solver.solve_painted_three_kept(model, painted, checkpoints, &on_progress)?,
-                None => solver.solve_painted_three(model, painted, &on_progress)?,
-            },
+            Self::Three(painted) => solver.solve_painted_three_kept(model, painted, keeping, &on_progress)?,
         })
     }
 }
@@ -88,30 +85,37 @@ pub fn run(args: &RunArgs, count: NonZeroUsize) -> Result<(), CliError> {
     }
     let results: Vec<PathBuf> = (1..=count.get()).map(|number| numbered(&result, number)).collect();
     geometry_files::check(&model, &input, &results, args.force)?;
+    let mut albums = vec![];
+    for result in &results {
+        let kept = kept_or_refused(args, result, &fingerprint)?;
+        albums.push(if kept.is_none() { Some(Album::open(&model, result, args.force)?) } else { None });
+    }
     let geometry = Geometry::of(&model)?;
     let solver = built_in_solver(args);
     let bar = Bar::new("B-scan");
     let mut outcomes = Vec::new();
-    for trace in 0..count.get() {
-        let result = numbered(&result, trace + 1);
+    for (trace, (result, album)) in results.into_iter().zip(albums).enumerate() {
+        let files = vec![];
         if let Some(record) = kept_or_refused(args, &result, &fingerprint)? {
-            outcomes.push(Outcome { target: target.clone(), result, kept: true, record });
+            outcomes.push(Outcome { target: target.clone(), result, files, kept: true, record });
             continue;
         }
+        let album = album.map_or_else(|| Album::open(&model, &result, args.force), Ok)?;
         let started = Instant::now();
         let moved = model.at_trace(trace);
-        let ((traces, stats), used) = checkpoint::with_checkpoint(&args.keep, &result, |checkpoints| {
-            geometry.solve(&solver, &moved, checkpoints, &bar, trace, count.get())
+        let ((traces, stats), used) = snapshots::solve_kept(&args.keep, &album, &result, |keeping| {
+            geometry.solve(&solver, &moved, keeping, &bar, trace, count.get())
         })?;
         gprmax::write_traces(&result, &traces, &moved)?;
+        let files = album.publish()?;
         used.remove();
         let record: RunRecord = record(args, &fingerprint, started, Some(stats.wall.si()));
         record.write_beside(&result)?;
-        outcomes.push(Outcome { target: target.clone(), result, kept: false, record });
+        outcomes.push(Outcome { target: target.clone(), result, files, kept: false, record });
     }
     drop(bar);
-    if outcomes.iter().any(|outcome| !outcome.kept) {
-        geometry_files::write(&model, &input)?;
+    if let Some(outcome) = outcomes.iter_mut().find(|outcome| !outcome.kept) {
+        outcome.files.extend(geometry_files::write(&model, &input)?);
     }
     if args.json {
         println!("{}", serde_json::to_string_pretty(&outcomes)?);
@@ -123,6 +127,9 @@ pub fn run(args: &RunArgs, count: NonZeroUsize) -> Result<(), CliError> {
         table.row([outcome.result.display().to_string(), how.into(), format!("{:.2}", outcome.record.wall_seconds)]);
     }
     table.print();
+    for file in outcomes.iter().flat_map(|outcome| &outcome.files) {
+        println!("{} written", file.display());
+    }
     Ok(())
 }
 

@@ -81,6 +81,11 @@ struct Told {
     written: Option<[usize; 2]>,
 }
 
+/// The checkpoint of a result.
+pub fn path(result: &Path) -> PathBuf {
+    folder::with_ending(result, "checkpoint")
+}
+
 /// Runs a solver with the checkpoint of a result; [`Used::remove`] it when the result is written.
 ///
 /// # Errors
@@ -90,7 +95,7 @@ pub fn with_checkpoint<R>(
     result: &Path,
     solve: impl FnOnce(Option<&Checkpoints<'_>>) -> Result<R, FdtdError>,
 ) -> Result<(R, Used), CliError> {
-    let path = folder::with_ending(result, "checkpoint");
+    let path = path(result);
     if args.resume && !path.exists() {
         return Err(CliError::input(format!(
             "there is no checkpoint `{}` to go on from\n\nhint: leave `--resume` out, and the run begins anew",

@@ -67,7 +67,7 @@ macro_rules! exit_codes {
 exit_codes! {
     Input: crate::packing::PackingError, crate::raster::RasterError, crate::compare::CompareError,
         crate::compare::text::TextError, crate::model::CheckError, crate::model::PaintError, crate::units::UnitError;
-    Input: crate::gprmax::GeometryWriteError;
+    Input: crate::gprmax::GeometryWriteError, crate::model::SnapshotError;
     Fault: serde_json::Error, crate::study::CaseError;
 }
 
@@ -120,6 +120,9 @@ impl From<crate::gprmax::RunError> for CliError {
 
 impl From<crate::fdtd::FdtdError> for CliError {
     fn from(error: crate::fdtd::FdtdError) -> Self {
+        if let crate::fdtd::FdtdError::Snapshot { .. } = error {
+            return Self::input(error.to_string());
+        }
         crate::forward::ForwardError::from(error).into()
     }
 }

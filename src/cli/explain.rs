@@ -75,6 +75,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), CliError> {
             "predicted_seconds": prediction.seconds,
             "cell_steps": prediction.cell_steps,
             "share_of_cell_steps_left_out": prediction.share_saved,
+            "snapshots": model.snapshots.iter().map(gprmax::snapshot_file).collect::<Vec<_>>(),
             "cells_per_shortest_wavelength": resolution.as_ref().map(|resolution| resolution.cells_per_wavelength),
         });
         println!("{}", serde_json::to_string_pretty(&value)?);
@@ -115,6 +116,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), CliError> {
             1e-9 * resolution.frequency.si()
         );
     }
+    print_snapshots(&model)?;
     println!("memory: {}", human_bytes(prediction.bytes));
     println!(
         "predicted time of the built-in solver: {:.2} s for {:.2e} cell-steps, {:.0} % of them left out (no wave there that a \
@@ -251,6 +253,19 @@ fn print_model(model: &Model) {
         1e12 * model.time_step(),
         model.order
     );
+}
+
+/// What is written beside the traces while they are computed.
+fn print_snapshots(model: &Model) -> Result<(), CliError> {
+    for asked in &model.snapshots {
+        let (step, [nx, ny, nz]) = (asked.step(model)?, asked.cells(model)?.count);
+        println!(
+            "snapshot: {nx} x {ny} x {nz} cells at step {step} ({:.3} ns), {}; what reaches its box by then is stepped",
+            1e9 * step as f64 * model.time_step(),
+            gprmax::snapshot_file(asked)
+        );
+    }
+    Ok(())
 }
 
 /// A share as people read it.

@@ -53,15 +53,17 @@ pub(super) fn check(model: &Model, input: &Path, results: &[PathBuf], force: boo
     Ok(())
 }
 
-/// Writes the geometry files, each whole or not at all.
+/// Writes the geometry files, each whole or not at all, and gives their paths.
 ///
 /// # Errors
 /// When a material cannot be written, or the system refuses.
-pub(super) fn write(model: &Model, input: &Path) -> Result<(), CliError> {
+pub(super) fn write(model: &Model, input: &Path) -> Result<Vec<PathBuf>, CliError> {
+    let mut written = vec![];
     for (path, bytes) in files(model, input)? {
         write_bytes(&path, &bytes)?;
+        written.push(path);
     }
-    Ok(())
+    Ok(written)
 }
 
 fn files(model: &Model, input: &Path) -> Result<Vec<(PathBuf, Vec<u8>)>, CliError> {

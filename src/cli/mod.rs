@@ -22,6 +22,7 @@ mod pack;
 mod progress;
 mod run;
 mod scene_args;
+mod snapshots;
 mod table;
 mod trace_file;
 mod validate;

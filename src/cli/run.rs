@@ -8,11 +8,12 @@ use clap::{Args, ValueEnum};
 
 use crate::cli::batch;
 use crate::cli::bscan;
-use crate::cli::checkpoint::{self, CheckpointArgs};
+use crate::cli::checkpoint::CheckpointArgs;
 use crate::cli::error::CliError;
 use crate::cli::folder::{self, RunRecord};
 use crate::cli::geometry_files;
 use crate::cli::progress::Bar;
+use crate::cli::snapshots::{self, Album};
 use crate::fdtd::{Fdtd, Precision};
 use crate::gprmax;
 use crate::model::Order;
@@ -104,6 +105,8 @@ pub struct Outcome {
     pub target: PathBuf,
     /// The result.
     pub result: PathBuf,
+    /// What else the input file asks for: geometry files and snapshots.
+    pub files: Vec<PathBuf>,
     /// Whether it was there already.
     pub kept: bool,
     /// What made it and how long that took.
@@ -133,6 +136,9 @@ pub fn run(args: &RunArgs) -> Result<(), CliError> {
         let record = &outcome.record;
         let how = if outcome.kept { "was there already" } else { "written" };
         println!("{} {how}: {} in {:.2} s", outcome.result.display(), record.solver, record.wall_seconds);
+        for file in &outcome.files {
+            println!("{} written", file.display());
+        }
     }
     Ok(())
 }
@@ -145,16 +151,16 @@ pub fn run_one(args: &RunArgs, target: &Path) -> Result<Outcome, CliError> {
     let (input, result) = paths(args, target)?;
     let fingerprint = fingerprint(args, &input)?;
     if let Some(record) = kept_or_refused(args, &result, &fingerprint)? {
-        return Ok(Outcome { target: target.into(), result, kept: true, record });
+        return Ok(Outcome { target: target.into(), result, files: vec![], kept: true, record });
     }
     let started = Instant::now();
-    let loop_seconds = match args.solver {
+    let (loop_seconds, files) = match args.solver {
         SolverName::Fdtd => run_fdtd(args, &input, &result)?,
         SolverName::Gprmax => run_gprmax(args, &input, &result)?,
     };
     let record = record(args, &fingerprint, started, loop_seconds);
     record.write_beside(&result)?;
-    Ok(Outcome { target: target.into(), result, kept: false, record })
+    Ok(Outcome { target: target.into(), result, files, kept: false, record })
 }
 
 /// The fingerprint of what is run: the model's files, and the order where it is not left to them.
@@ -266,34 +272,38 @@ pub(super) fn paths(args: &RunArgs, target: &Path) -> Result<(PathBuf, PathBuf),
     Ok((input, args.out.clone().unwrap_or(default)))
 }
 
-fn run_fdtd(args: &RunArgs, input: &Path, result: &Path) -> Result<Option<f64>, CliError> {
+/// Runs the built-in solver; gives the time of its loop and the files beside the result.
+fn run_fdtd(args: &RunArgs, input: &Path, result: &Path) -> Result<(Option<f64>, Vec<PathBuf>), CliError> {
     let read = gprmax::read_input(input)?;
     for note in &read.notes {
         eprintln!("note: {note}");
     }
     geometry_files::check(&read.model, input, &[result.to_path_buf()], args.force)?;
+    let album = Album::open(&read.model, result, args.force)?;
     let bar = Bar::new("simulating");
     let mut model = read.model;
     model.order = args.order.unwrap_or(model.order);
     let solver = built_in_solver(args);
-    let ((traces, stats), used) = checkpoint::with_checkpoint(&args.keep, result, |checkpoints| match checkpoints {
-        Some(checkpoints) => solver.solve_kept(&model, checkpoints, &|progress| bar.update(progress)),
-        None => solver.solve_stats(&model, &|progress| bar.update(progress)),
+    let ((traces, stats), used) = snapshots::solve_kept(&args.keep, &album, result, |keeping| {
+        solver.solve_kept(&model, keeping, &|progress| bar.update(progress))
     })?;
     drop(bar);
     gprmax::write_traces(result, &traces, &model)?;
-    geometry_files::write(&model, input)?;
+    let mut files = geometry_files::write(&model, input)?;
+    files.extend(album.publish()?);
     used.remove();
-    Ok(Some(stats.wall.si()))
+    Ok((Some(stats.wall.si()), files))
 }
 
-fn run_gprmax(args: &RunArgs, input: &Path, result: &Path) -> Result<Option<f64>, CliError> {
+/// Runs gprMax; gives the time of its loop and the files beside the result.
+fn run_gprmax(args: &RunArgs, input: &Path, result: &Path) -> Result<(Option<f64>, Vec<PathBuf>), CliError> {
     let asked = gprmax::read_directives(input)?;
     gprmax::check_scheme(args.order.unwrap_or(asked.order), asked.averaging)?;
     let solver = gprmax_solver(args.gprmax_python.as_deref(), args.precision, args.threads)?;
+    snapshots::check_any(input, result, args.force)?;
     let bar = Bar::new("gprMax");
     let run = solver.run_file(input, result, &|progress| bar.update(progress))?;
-    Ok(run.loop_seconds)
+    Ok((run.loop_seconds, run.snapshots))
 }
 
 /// Finds gprMax and sets it up for a run.

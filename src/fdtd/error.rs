@@ -3,7 +3,7 @@
 use super::checkpoint::CheckpointError;
 use super::instructions::InstructionSet;
 use crate::forward::ForwardError;
-use crate::model::{Axis, CheckError, Order, PaintError};
+use crate::model::{Axis, CheckError, Order, PaintError, SnapshotError};
 
 /// Why the embedded solver gave no traces.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -315,6 +315,30 @@ pub enum FdtdError {
     /// A checkpoint that the run cannot go on from.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
+    /// A snapshot that cannot be taken of this model.
+    #[error(transparent)]
+    NoSnapshot(#[from] SnapshotError),
+    /// A snapshot that was taken, and then could not be kept.
+    #[error("snapshot {number}: failed to {reason}")]
+    Snapshot {
+        /// Place in the list of snapshots, from 1.
+        number: usize,
+        /// What the system said.
+        reason: String,
+    },
+    /// A snapshot of an earlier part of the run that is not there any more.
+    #[error(
+        "the checkpoint was written after step {begun}, but snapshot {number}, of step {step}, is not there\n\n\
+         hint: begin anew with `--fresh`"
+    )]
+    SnapshotGone {
+        /// Place in the list of snapshots, from 1.
+        number: usize,
+        /// Its step.
+        step: usize,
+        /// Steps made by the checkpoint.
+        begun: usize,
+    },
     /// The caller asked to stop.
     #[error("stopped on request")]
     Stopped,
@@ -324,9 +348,10 @@ impl From<FdtdError> for ForwardError {
     fn from(error: FdtdError) -> Self {
         match error {
             FdtdError::Stopped => Self::Stopped,
-            FdtdError::Diverged { .. } | FdtdError::DivergedAt { .. } | FdtdError::NoSuchInstructions { .. } => {
-                Self::Solver(Box::new(error))
-            }
+            FdtdError::Diverged { .. }
+            | FdtdError::DivergedAt { .. }
+            | FdtdError::NoSuchInstructions { .. }
+            | FdtdError::Snapshot { .. } => Self::Solver(Box::new(error)),
             model => Self::Model(Box::new(model)),
         }
     }

@@ -4,8 +4,8 @@ use std::num::NonZeroUsize;
 
 use super::FdtdError;
 use super::block::{Block, Probe};
-use super::checkpoint::Checkpoints;
 use super::instructions::InstructionSet;
+use super::keeping::Keeping;
 use super::predict::{bytes_needed, painting_bytes};
 use super::reach::Cones;
 use super::real::Real;
@@ -111,31 +111,22 @@ impl Fdtd {
     /// # Errors
     /// See [`FdtdError`].
     pub fn solve_stats(&self, model: &Model, on_progress: OnProgress<'_>) -> Result<(Traces, Stats), FdtdError> {
-        self.solve_any(model, None, on_progress)
+        self.solve_kept(model, Keeping::default(), on_progress)
     }
 
-    /// As [`Fdtd::solve_stats`], with checkpoints to go on from; models that are solved as a plane take so little time that
-    /// they have none.
+    /// As [`Fdtd::solve_stats`], with checkpoints to go on from and the snapshots that the model asks for; models that are
+    /// solved as a plane take so little time that they have no checkpoints.
     ///
     /// # Errors
     /// See [`FdtdError`].
     pub fn solve_kept(
         &self,
         model: &Model,
-        checkpoints: &Checkpoints<'_>,
-        on_progress: OnProgress<'_>,
-    ) -> Result<(Traces, Stats), FdtdError> {
-        self.solve_any(model, Some(checkpoints), on_progress)
-    }
-
-    fn solve_any(
-        &self,
-        model: &Model,
-        checkpoints: Option<&Checkpoints<'_>>,
+        keeping: Keeping<'_>,
         on_progress: OnProgress<'_>,
     ) -> Result<(Traces, Stats), FdtdError> {
         if !model.is_plane() {
-            return self.solve_three(model, checkpoints, on_progress);
+            return self.solve_three(model, keeping, on_progress);
         }
         check_model(model)?;
         check_memory(painting_bytes(model), available_memory())?;

@@ -16,7 +16,10 @@ mod writer;
 
 pub use geometry::{GeometryError, GeometryWriteError, geometry_files, geometry_paths};
 pub use install::{InstallError, Interpreter, VersionInfo};
-pub use output::{OutputError, OutputWriteError, read_traces, traces_to_bytes, write_traces};
+pub use output::{
+    OutputError, OutputWriteError, read_snapshot, read_traces, snapshot_file, snapshot_folder, snapshot_path,
+    snapshot_to_bytes, traces_to_bytes, write_traces,
+};
 pub use program::{GprMax, GprMaxRun, RunError, check_scheme};
 pub use reader::{
     COMMANDS, CommandKind, Directives, InFileError, Input, Note, Problem, input_files, read_directives, read_input,

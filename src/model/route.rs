@@ -74,8 +74,10 @@ impl Model {
             return Some(why);
         }
         let known = |source: &Source| matches!(source, Source::HertzianDipole(_));
-        let unknown = self.sources.iter().position(|source| !known(source))?;
-        Some(format!("source {} is a {}", unknown + 1, self.sources[unknown].kind()))
+        if let Some(unknown) = self.sources.iter().position(|source| !known(source)) {
+            return Some(format!("source {} is a {}", unknown + 1, self.sources[unknown].kind()));
+        }
+        (!self.snapshots.is_empty()).then(|| "it asks for snapshots".into())
     }
 }
 

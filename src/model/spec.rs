@@ -2,7 +2,7 @@
 
 use super::{
     AbsorbingProfile, Averaging, Axis, GeometryFile, Grid, MagneticAveraging, Material, MaterialId, Object, Order,
-    Receiver, Source, Waveform,
+    Receiver, Snapshot, Source, Waveform,
 };
 
 /// How long to simulate.
@@ -58,6 +58,8 @@ pub struct Model {
     pub receiver_steps: [f64; 3],
     /// Geometry files to write (`#geometry_objects_write`); no trace depends on them.
     pub geometry_files: Vec<GeometryFile>,
+    /// Snapshots to take (`#snapshot`); no trace depends on them.
+    pub snapshots: Vec<Snapshot>,
 }
 
 impl Model {
@@ -84,6 +86,7 @@ impl Model {
             source_steps: [0.0; 3],
             receiver_steps: [0.0; 3],
             geometry_files: vec![],
+            snapshots: vec![],
         }
     }
 

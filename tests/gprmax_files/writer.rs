@@ -280,6 +280,19 @@ fn requests_for_geometry_files_survive_a_round_trip() {
     assert!(error.starts_with("gprMax does not take `two words` as the name of a geometry file"), "{error}");
 }
 
+/// Snapshots at steps and at times, in both layouts.
+#[test]
+fn snapshots_survive_a_round_trip() {
+    let folder = tempfile::tempdir().unwrap();
+    for case in ["gprmax/snapshots_plane", "gprmax3d/snapshots_te", "gprmax3d/snapshots"] {
+        let scene = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("validation").join(case).join("scene.in");
+        let model = read_model(&scene).unwrap();
+        assert!(model.snapshots.len() >= 3, "{case}");
+        let paths = write_input(&model, folder.path(), "shots", &InputOptions::default()).unwrap();
+        assert_eq!(read_model(&paths[0]).unwrap().snapshots, model.snapshots, "{case}");
+    }
+}
+
 /// Every kind of object that fills cells or claims edges says the same after reading, writing and reading again.
 #[test]
 fn shapes_survive_a_round_trip() {

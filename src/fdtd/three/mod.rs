@@ -4,11 +4,13 @@
 //! A model is painted, turned into coefficients (`setup`, its sources `drive`), cut into planes across x (`plane`, with `grades` for the
 //! coefficients of its edges, `absorbing` and `poles` for its memories) and stepped by passes that follow one another
 //! through the planes (`team`); the loops over a row are in `kernel`. Rows that no wave has reached, or that no receiver will
-//! hear of, are not stepped (`reach`). An effect that a model does not call for has no array. Two-dimensional models (TE, TM
+//! hear of, are not stepped (`reach`). Where the model asks for
+//! snapshots, all passes end at their steps and the fields are read off the planes (`camera`). An effect that a model does not call for has no array. Two-dimensional models (TE, TM
 //! across x or y, and TMz beyond what the plane knows) run here too, turned so that y is the invariant axis (`turn`), with
 //! three components and one row in a plane.
 
 mod absorbing;
+mod camera;
 mod drive;
 mod grades;
 mod instructions;

@@ -263,6 +263,12 @@ impl<T: Number> Plane<T> {
         found
     }
 
+    /// `count` scaled values of one of Ex, Ey, Ez, Hx, Hy, Hz in row `j`, from node 0 on.
+    pub fn row(&self, field: usize, j: usize, count: usize) -> &[T] {
+        let sheet = if field < 3 { &self.e[field] } else { &self.h[field - 3] };
+        sheet.at(j, 0, count)
+    }
+
     /// The first edge whose scaled E is not a number or larger than `limit`, as axis and `(j, k)`.
     pub fn find_beyond(&self, shared: &Shared<T>, limit: T) -> Option<(usize, [usize; 2])> {
         (0..3).find_map(|axis| {

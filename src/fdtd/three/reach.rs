@@ -11,7 +11,7 @@
 //! step `b`, on E or on H, has moved nothing farther away than `pace (k - b + 1) + 1` nodes.
 //!
 //! *Backwards.* Of `N` samples the last is taken after step `N - 2`. A field of step `k` bears on a sample only within
-//! `pace (N - 1 - k) + 1` nodes of a receiver, E or H.
+//! `pace (N - 1 - k) + 1` nodes of a receiver, E or H; on a snapshot of step `n`, within `pace (n - k) + 1` of its box.
 //!
 //! A node is stepped where both hold for some source and some receiver. Every other value is still zero, or nobody looks at
 //! what follows from it; so the samples keep their bits (but for the sign of a zero in a conductor, as in two dimensions).
@@ -75,13 +75,22 @@ impl Cones {
             field
         };
         let sources = || setup.begins().map(|(node, step)| (node, (step as i32).min(steps) * pace));
-        let receivers = || setup.receivers.iter().map(|&node| (node, 0));
+        // A snapshot looks at its box before one step only: for all later ones it is farther away than any wave gets.
+        let looks = || {
+            setup.looks.iter().flat_map(|look| {
+                let [[i0, j0, k0], [i1, j1, k1]] = look.corners();
+                let early = (steps - look.step as i32) * pace;
+                let rows = (i0..=i1).flat_map(move |i| (j0..=j1).map(move |j| [i, j]));
+                rows.flat_map(move |[i, j]| [([i, j, k0], early), ([i, j, k1], early)])
+            })
+        };
+        let receivers = || setup.receivers.iter().map(|&node| (node, 0)).chain(looks());
         let from = spread(&mut sources());
         let low = spread(&mut sources().map(|(node, late)| (node, node[2] as i32 + late)));
         let high = spread(&mut sources().map(|(node, late)| (node, late - node[2] as i32)));
         let until = spread(&mut receivers());
-        let low_back = spread(&mut receivers().map(|(node, _)| (node, node[2] as i32)));
-        let high_back = spread(&mut receivers().map(|(node, _)| (node, -(node[2] as i32))));
+        let low_back = spread(&mut receivers().map(|(node, early)| (node, node[2] as i32 + early)));
+        let high_back = spread(&mut receivers().map(|(node, early)| (node, early - node[2] as i32)));
         let cone = |row: usize| Cone {
             from: from[row],
             until: until[row],

@@ -4,10 +4,12 @@ use std::borrow::Cow;
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 
-use super::super::checkpoint::{Checkpoints, Keeper};
+use super::super::checkpoint::Keeper;
+use super::super::keeping::Keeping;
 use super::super::predict::Prediction;
 use super::super::{Fdtd, FdtdError, Precision, Stats};
 use super::absorbing::Absorbing;
+use super::camera::{Camera, Look};
 use super::grades::Grades;
 use super::instructions::Number;
 use super::plane::{Probe, Shared};
@@ -26,7 +28,15 @@ use crate::units::{Metres, Seconds};
 struct Manner<'a> {
     /// Leaves out what no wave has reached or no receiver will see.
     skip: bool,
-    checkpoints: Option<&'a Checkpoints<'a>>,
+    keeping: Keeping<'a>,
+    /// How the model has been turned.
+    turn: Option<Turn>,
+}
+
+impl<'a> Manner<'a> {
+    fn of(skip: bool, keeping: Keeping<'a>) -> Self {
+        Self { skip, keeping, turn: None }
+    }
 }
 
 impl Fdtd {
@@ -37,7 +47,7 @@ impl Fdtd {
     pub(in super::super) fn solve_three(
         &self,
         model: &Model,
-        checkpoints: Option<&Checkpoints<'_>>,
+        keeping: Keeping<'_>,
         on_progress: OnProgress<'_>,
     ) -> Result<(Traces, Stats), FdtdError> {
         check_model(model)?;
@@ -46,7 +56,7 @@ impl Fdtd {
         if let Some(resolution) = Resolution::of_three(model, &painted) {
             resolution.check()?;
         }
-        self.solve_upright(model, Cow::Owned(painted), Manner { skip: true, checkpoints }, on_progress)
+        self.solve_upright(model, Cow::Owned(painted), Manner::of(true, keeping), on_progress)
     }
 
     /// Runs a model that has been painted by [`paint3`] (and its resolution checked) already.
@@ -59,10 +69,10 @@ impl Fdtd {
         painted: &Painted3,
         on_progress: OnProgress<'_>,
     ) -> Result<(Traces, Stats), FdtdError> {
-        self.solve_upright(model, Cow::Borrowed(painted), Manner { skip: true, checkpoints: None }, on_progress)
+        self.solve_upright(model, Cow::Borrowed(painted), Manner::of(true, Keeping::default()), on_progress)
     }
 
-    /// As [`Fdtd::solve_painted_three`], with checkpoints to go on from.
+    /// As [`Fdtd::solve_painted_three`], with checkpoints to go on from and the snapshots that the model asks for.
     ///
     /// # Errors
     /// See [`FdtdError`].
@@ -70,10 +80,10 @@ impl Fdtd {
         &self,
         model: &Model,
         painted: &Painted3,
-        checkpoints: &Checkpoints<'_>,
+        keeping: Keeping<'_>,
         on_progress: OnProgress<'_>,
     ) -> Result<(Traces, Stats), FdtdError> {
-        let manner = Manner { skip: true, checkpoints: Some(checkpoints) };
+        let manner = Manner::of(true, keeping);
         self.solve_upright(model, Cow::Borrowed(painted), manner, on_progress)
     }
 
@@ -89,7 +99,7 @@ impl Fdtd {
         skip: bool,
         on_progress: OnProgress<'_>,
     ) -> Result<(Traces, Stats), FdtdError> {
-        self.solve_upright(model, Cow::Borrowed(painted), Manner { skip, checkpoints: None }, on_progress)
+        self.solve_upright(model, Cow::Borrowed(painted), Manner::of(skip, Keeping::default()), on_progress)
     }
 
     /// Turns a two-dimensional model so that y is its invariant axis, and runs it.
@@ -103,7 +113,7 @@ impl Fdtd {
         let Some(turn) = Turn::of(model) else {
             return self.solve_setup(model, Setup3::new(model, painted)?, manner, on_progress);
         };
-        let turned = turn.model(model);
+        let (turned, manner) = (turn.model(model), Manner { turn: Some(turn), ..manner });
         let setup = Setup3::new(&turned, Cow::Owned(turn.painted(&painted)));
         let run = setup.and_then(|setup| self.solve_setup(&turned, setup, manner, on_progress));
         let (traces, stats) = run.map_err(|error| turn.error_back(error))?;
@@ -141,8 +151,10 @@ impl Fdtd {
         let threads = team::worthwhile_threads(model.grid.cell_count(), model.grid.cells[0], wanted);
         let shared = Shared::<T>::new(setup, instruction_set, manner.skip);
         let planes = team::planes(setup, &shared);
-        let mut keeper = manner.checkpoints.map(|checkpoints| Keeper::new(checkpoints, model, self.precision));
-        let (probes, wall) = team::run(setup, &shared, planes, threads, keeper.as_mut(), on_progress)?;
+        let Keeping { checkpoints, snapshots } = manner.keeping;
+        let mut keeper = checkpoints.map(|checkpoints| Keeper::new(checkpoints, model, self.precision));
+        let mut camera = snapshots.map(|snapshots| Camera::new(*snapshots, setup, manner.turn));
+        let (probes, wall) = team::run(setup, &shared, planes, threads, keeper.as_mut(), camera.as_mut(), on_progress)?;
         let cell_steps = model.grid.cell_count() as u64 * setup.iterations as u64;
         let wall = Seconds(wall.as_secs_f64());
         Ok((probes, Stats { wall, cell_steps, bytes: 0, threads, instruction_set }))
@@ -209,8 +221,10 @@ fn bytes<T: Number>(setup: &Setup3<'_>) -> u64 {
     let per_entry = setup.painted.edges_per_entry();
     let poles: usize = setup.edges.iter().zip(per_entry).map(|(edge, count)| edge.memories() * count).sum();
     let samples = setup.receivers.len() * 6 * 8 + setup.drives.len() * (8 + size_of::<T>());
+    let snapshot = setup.looks.iter().map(|look: &Look| look.bytes(size_of::<T>())).max().unwrap_or(0);
     fields
         + magnetic
+        + snapshot
         + Grades::<T>::bytes(setup)
         + Absorbing::<T>::bytes(setup, width)
         + Cones::bytes(setup.painted.cells)
@@ -247,6 +261,7 @@ pub fn predict_three(
     cut.pml_cells = Some(absorbing);
     cut.sources.clear();
     cut.receivers.clear();
+    cut.snapshots.clear();
     // The middle of the model, whose objects are those that cost.
     let first = (nx - planes) / 2;
     let piece = painted.cut_x(first..first + planes);

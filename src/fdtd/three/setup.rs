@@ -6,6 +6,7 @@ use super::super::FdtdError;
 use super::super::coefficients::{Edge, check_electric, check_resonances, edge_of};
 use super::super::setup::node_in_grid;
 use super::super::slab::Slab;
+use super::camera::Look;
 use super::drive::{Drive, Load, drives, loads};
 use crate::model::{
     Axis, FaceMaterial, Indices, Model, Order, Painted3, available_memory, check_absorbing_cells, check_grid,
@@ -29,6 +30,8 @@ pub struct Setup3<'a> {
     pub loads: Vec<Load>,
     /// Node of each receiver.
     pub receivers: Vec<[usize; 3]>,
+    /// Snapshots, in the order of their steps.
+    pub looks: Vec<Look>,
     pub iterations: usize,
     pub dt: f64,
     pub spacing: [f64; 3],
@@ -96,6 +99,7 @@ impl<'a> Setup3<'a> {
             drives,
             loads,
             receivers: receivers.collect::<Result<_, _>>()?,
+            looks: Look::all(model)?,
             faces,
             slabs: slabs(model, &painted)?,
             painted,

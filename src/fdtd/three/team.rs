@@ -14,6 +14,7 @@ use std::time::{Duration, Instant};
 use super::super::FdtdError;
 use super::super::checkpoint::Keeper;
 use super::super::state::{Numbers, State};
+use super::camera::Camera;
 use super::instructions::{Number, step};
 use super::plane::{Plane, Probe, Scratch, Shared, Step};
 use super::setup::{Setup3, axis_of};
@@ -42,6 +43,8 @@ struct Team<'a, T> {
     done: Vec<Done>,
     /// Steps made when the passes begin.
     begun: usize,
+    /// Steps made when they end, at the latest.
+    until: usize,
     /// The pass before which all stop, so that all planes have made the same steps.
     end: AtomicUsize,
     halt: AtomicBool,
@@ -85,6 +88,7 @@ pub fn run<T: Number>(
     mut planes: Vec<Plane<T>>,
     threads: usize,
     mut keeper: Option<&mut Keeper<'_>>,
+    mut camera: Option<&mut Camera<'_>>,
     on_progress: OnProgress<'_>,
 ) -> Result<(Vec<Probe>, Duration), FdtdError> {
     let loaded = keeper.as_mut().map(|keeper| keeper.load(planes.as_mut_slice())).transpose()?;
@@ -94,14 +98,21 @@ pub fn run<T: Number>(
         planes: planes.into_iter().map(RwLock::new).collect(),
         done: (0..threads).map(|_| Done(AtomicUsize::new(0))).collect(),
         begun: loaded.unwrap_or(0),
+        until: setup.iterations,
         end: AtomicUsize::new(usize::MAX),
         halt: AtomicBool::new(false),
         failure: Mutex::new(None),
         limit: T::of(setup.limit()),
     };
+    if let Some(camera) = &mut camera {
+        camera.go_on(team.begun)?;
+    }
     let begin = Instant::now();
     let mut last: Option<Instant> = None;
     loop {
+        if let Some(camera) = &mut camera {
+            team.show(camera)?;
+        }
         let (mut asked, due) = (false, keeper.as_ref().map(|keeper| (keeper.due(), keeper.stop_from())));
         team.leg(&mut |done| {
             let now = Instant::now();
@@ -131,11 +142,11 @@ pub fn run<T: Number>(
             return Err(failure);
         }
         let passes = team.end.swap(usize::MAX, Ordering::Relaxed);
-        team.begun = team.begun.saturating_add(passes.saturating_mul(STAGES));
+        team.begun = team.begun.saturating_add(passes.saturating_mul(STAGES)).min(team.until);
         if team.begun >= setup.iterations {
             break;
         }
-        if let Some(keeper) = &mut keeper {
+        if let Some(keeper) = keeper.as_mut().filter(|_| passes != usize::MAX) {
             keeper.write(team.begun, team.planes.as_mut_slice());
         }
         if asked {
@@ -167,6 +178,17 @@ impl Drop for HaltOnPanic<'_> {
 }
 
 impl<T: Number> Team<'_, T> {
+    /// Takes the snapshots that are due now, and lets the passes end at the next.
+    fn show(&mut self, camera: &mut Camera<'_>) -> Result<(), FdtdError> {
+        if camera.next() == Some(self.begun) {
+            let planes = self.planes.iter_mut().map(|plane| &*plane.get_mut().unwrap_or_else(PoisonError::into_inner));
+            let planes: Vec<&Plane<T>> = planes.skip(1).take(self.setup.painted.cells[0]).collect();
+            camera.take(self.begun, self.setup, &planes)?;
+        }
+        self.until = camera.next().unwrap_or(self.setup.iterations);
+        Ok(())
+    }
+
     /// Runs passes until the steps are done or the first thread is told to pause or stop.
     fn leg(&self, tick: &mut dyn FnMut(usize) -> Tick) {
         std::thread::scope(|scope| {
@@ -180,7 +202,7 @@ impl<T: Number> Team<'_, T> {
     fn passes(&self, me: usize, tick: &mut dyn FnMut(usize) -> Tick) {
         let _guard = HaltOnPanic(&self.halt);
         let mut scratch = Scratch::new(self.shared);
-        let (nx, steps) = (self.setup.painted.cells[0], self.setup.iterations);
+        let (nx, steps) = (self.setup.painted.cells[0], self.until);
         // Positions of a pass's front until its last stage has left the grid.
         let positions = nx + STAGES - 1;
         for pass in (me..(steps - self.begun).div_ceil(STAGES)).step_by(self.done.len()) {
@@ -371,7 +393,7 @@ mod tests {
         let mut shared = Shared::<T>::new(&setup, set, order.skip);
         shared.cones.narrow(order.narrower);
         let planes = planes(&mut setup, &shared);
-        let (mut probes, _) = run(&setup, &shared, planes, order.threads, None, &|_| ControlFlow::Continue(()))?;
+        let (mut probes, _) = run(&setup, &shared, planes, order.threads, None, None, &|_| ControlFlow::Continue(()))?;
         probes.sort_by_key(|probe| probe.receiver);
         Ok(probes.into_iter().flat_map(|probe| probe.samples).flatten().map(f64::to_bits).collect())
     }

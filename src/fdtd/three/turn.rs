@@ -4,8 +4,8 @@
 //! y has long rows and many planes, one or two rows in each. The axes move in cyclic order, so that no sign changes.
 
 use super::super::FdtdError;
-use crate::model::{Axis, Grid, Model, Painted3, Receiver, Source};
-use crate::trace::{Component, Traces};
+use crate::model::{Axis, Grid, Model, Painted3, Receiver, Snapshot, SnapshotError, Source};
+use crate::trace::{Component, FieldSnapshot, Traces};
 use crate::units::Metres;
 
 /// How many places each axis moves on in cyclic order.
@@ -46,6 +46,12 @@ impl Turn {
         };
         let receiver =
             |receiver: &Receiver| Receiver { position: self.triple(receiver.position), name: receiver.name.clone() };
+        let snapshot = |asked: &Snapshot| Snapshot {
+            lower: self.triple(asked.lower),
+            upper: self.triple(asked.upper),
+            spacing: self.triple(asked.spacing),
+            ..asked.clone()
+        };
         let sides = |[x0, y0, z0, x1, y1, z1]: [usize; 6]| {
             let ([x0, y0, z0], [x1, y1, z1]) = (self.triple([x0, y0, z0]), self.triple([x1, y1, z1]));
             [x0, y0, z0, x1, y1, z1]
@@ -71,6 +77,7 @@ impl Turn {
             source_steps: self.triple(model.source_steps),
             receiver_steps: self.triple(model.receiver_steps),
             geometry_files: vec![],
+            snapshots: model.snapshots.iter().map(snapshot).collect(),
         }
     }
 
@@ -128,6 +135,29 @@ impl Turn {
         traces
     }
 
+    /// A snapshot of a turned model, as one of the model.
+    pub fn snapshot_back(self, snapshot: FieldSnapshot) -> FieldSnapshot {
+        let back = self.back();
+        let shape = back.triple(snapshot.shape);
+        let [_, ny, nz] = snapshot.shape;
+        let places = || {
+            let rows = (0..shape[0]).flat_map(move |i| (0..shape[1]).map(move |j| [i, j]));
+            rows.flat_map(move |[i, j]| {
+                (0..shape[2]).map(move |k| {
+                    let [a, b, c] = self.triple([i, j, k]);
+                    (a * ny + b) * nz + c
+                })
+            })
+        };
+        FieldSnapshot {
+            origin: back.triple(snapshot.origin),
+            spacing: back.triple(snapshot.spacing),
+            shape,
+            fields: std::array::from_fn(|field| snapshot.fields[field / 3 * 3 + self.axis(field % 3)].picked(places())),
+            ..snapshot
+        }
+    }
+
     /// An error about a turned model, as one about the model.
     pub fn error_back(self, error: FdtdError) -> FdtdError {
         let (axis, triple) = (|axis| self.back().direction(axis), |node| self.back().triple(node));
@@ -156,6 +186,19 @@ impl Turn {
                 position: self.back().triple(position),
                 value,
             },
+            FdtdError::NoSnapshot(error) => FdtdError::NoSnapshot(match error {
+                SnapshotError::Extent { name, axis: of, lower, upper, size } => {
+                    SnapshotError::Extent { name, axis: axis(of), lower, upper, size }
+                }
+                SnapshotError::Fine { name, axis: of, spacing } => {
+                    SnapshotError::Fine { name, axis: axis(of), spacing }
+                }
+                SnapshotError::Layer { name, axis: of, layer } => SnapshotError::Layer { name, axis: axis(of), layer },
+                SnapshotError::Partial { name, axis: of, step, first } => {
+                    SnapshotError::Partial { name, axis: axis(of), step, first }
+                }
+                time @ SnapshotError::Time { .. } => time,
+            }),
             other => other,
         }
     }

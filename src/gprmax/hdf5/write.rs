@@ -23,8 +23,12 @@ pub enum Attribute {
     Float(f64),
     /// Floats.
     Floats(Vec<f64>),
+    /// Floats of 32 bits.
+    Floats32(Vec<f32>),
     /// A text; h5py sees a `str`.
     Text(String),
+    /// A text of ASCII letters, as long as it is; h5py sees `bytes`.
+    Ascii(String),
     /// Something no reader here needs, by the name of its type. Not writable.
     Other(&'static str),
 }
@@ -34,8 +38,8 @@ impl Attribute {
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Int(_) | Self::Ints(_) | Self::Ints32(_) => "integers",
-            Self::Float(_) | Self::Floats(_) => "floats",
-            Self::Text(_) => "a text",
+            Self::Float(_) | Self::Floats(_) | Self::Floats32(_) => "floats",
+            Self::Text(_) | Self::Ascii(_) => "a text",
             Self::Other(kind) => kind,
         }
     }
@@ -47,7 +51,9 @@ impl Attribute {
             Self::Ints32(values) => AttrValue::I32Array(values.clone()),
             Self::Float(value) => AttrValue::F64(*value),
             Self::Floats(values) => AttrValue::F64Array(values.clone()),
+            Self::Floats32(values) => AttrValue::F32Array(values.clone()),
             Self::Text(text) => AttrValue::VarLenString(text.clone()),
+            Self::Ascii(text) => AttrValue::AsciiString(text.clone()),
             Self::Other(kind) => {
                 return Err(Hdf5Error::Encode { reason: format!("an attribute of type {kind}") });
             }

@@ -2,8 +2,10 @@
 
 mod error;
 mod read;
+mod snapshot;
 mod write;
 
 pub use error::{OutputError, OutputWriteError};
 pub use read::read_traces;
+pub use snapshot::{read_snapshot, snapshot_file, snapshot_folder, snapshot_path, snapshot_to_bytes};
 pub use write::{traces_to_bytes, write_traces};

@@ -9,7 +9,7 @@ use crate::model::{Axis, Model, Source, TimeWindow, VoltageSource};
 use crate::trace::{AScan, Component, ReceiverTraces, Traces};
 
 /// The version of gprMax whose layout is written.
-const LAYOUT: &str = "4.0.1";
+pub(super) const LAYOUT: &str = "4.0.1";
 
 /// Writes traces as gprMax 4 would, so that its tools, h5py and MATLAB read them.
 ///

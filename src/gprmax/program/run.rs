@@ -8,12 +8,12 @@ use std::process::Command;
 use std::time::Instant;
 
 use super::super::install::Interpreter;
-use super::super::output::read_traces;
+use super::super::output::{read_traces, snapshot_folder};
 use super::super::writer::{InputOptions, write_input};
 use super::error::RunError;
 use super::process::{Event, run};
 use super::progress::{loop_seconds, progress};
-use crate::files::FileError;
+use crate::files::{FileError, create_folder};
 use crate::forward::{Forward, ForwardError, OnProgress, Progress};
 use crate::model::{Averaging, Model, Order};
 use crate::trace::Traces;
@@ -41,6 +41,8 @@ pub struct GprMaxRun {
     pub wall_seconds: f64,
     /// Time of the loop over time steps as gprMax prints it, s.
     pub loop_seconds: Option<f64>,
+    /// The snapshots that the input file asks for, in the order of their names.
+    pub snapshots: Vec<PathBuf>,
 }
 
 impl GprMax {
@@ -110,7 +112,8 @@ impl GprMax {
         }
         let traces = read_traces(&partial)?;
         fs::rename(&partial, output).map_err(FileError::of("write", output))?;
-        Ok(GprMaxRun { traces, wall_seconds, loop_seconds: loop_time })
+        let snapshots = move_files(&snapshot_folder(&partial), &snapshot_folder(output))?;
+        Ok(GprMaxRun { traces, wall_seconds, loop_seconds: loop_time, snapshots })
     }
 
     /// Writes a model into a folder that is removed afterwards, and runs it.
@@ -201,6 +204,23 @@ impl Elsewhere {
     fn path(&self) -> Option<PathBuf> {
         Some(self.folder.as_ref()?.join(self.name.as_ref()?))
     }
+}
+
+/// Moves the files of one folder, if it is there, into another.
+fn move_files(from: &Path, to: &Path) -> Result<Vec<PathBuf>, FileError> {
+    if !from.is_dir() {
+        return Ok(vec![]);
+    }
+    create_folder(to)?;
+    let mut moved = vec![];
+    for entry in fs::read_dir(from).map_err(FileError::of("read", from))? {
+        let entry = entry.map_err(FileError::of("read", from))?;
+        let place = to.join(entry.file_name());
+        fs::rename(entry.path(), &place).map_err(FileError::of("write", &place))?;
+        moved.push(place);
+    }
+    moved.sort();
+    Ok(moved)
 }
 
 /// `trace.h5` → `trace.h5.log`.

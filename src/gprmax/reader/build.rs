@@ -69,8 +69,9 @@ fn read_whole(path: &Path, text: &str) -> Result<Input, InFileError> {
         .into_iter()
         .map(|line| Note { line, text: "ignored, as gprMax does: a command must start in the first column".into() })
         .collect();
-    // gprMax builds materials, then their poles, waveforms, sources and receivers, then objects, each in file order.
-    let passes: [&[&str]; 9] = [
+    // gprMax builds materials, then their poles, waveforms, sources and receivers, then objects and snapshots, each in
+    // file order.
+    let passes: [&[&str]; 10] = [
         &["pml_cfs"],
         &["material"],
         &["add_dispersion_debye"],
@@ -92,6 +93,7 @@ fn read_whole(path: &Path, text: &str) -> Result<Input, InFileError> {
             "geometry_objects_read",
             "geometry_objects_write",
         ],
+        &["snapshot"],
     ];
     for pass in passes {
         for command in commands.iter().filter(|command| pass.contains(&command.name)) {

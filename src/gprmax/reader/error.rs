@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::super::geometry::GeometryError;
 use crate::files::FileError;
+use crate::model::SnapshotError;
 
 /// Why an input file was not read.
 #[derive(Debug, thiserror::Error)]
@@ -313,4 +314,7 @@ pub enum Problem {
     /// The file of a `#geometry_objects_read` is wrong.
     #[error(transparent)]
     Geometry(#[from] GeometryError),
+    /// A snapshot that cannot be taken.
+    #[error(transparent)]
+    Snapshot(#[from] SnapshotError),
 }

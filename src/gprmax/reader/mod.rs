@@ -15,6 +15,7 @@ mod excitation;
 mod include;
 mod lines;
 mod multiple;
+mod outputs;
 mod shapes;
 mod single;
 mod sources;

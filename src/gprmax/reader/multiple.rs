@@ -1,19 +1,21 @@
-//! The commands that may stand any number of times: materials, receivers, objects; for waveforms and sources see `sources`.
+//! The commands that may stand any number of times: materials, receivers, objects; for waveforms and sources see
+//! `sources`, for files beside the traces `outputs`.
 
 use std::path::Path;
 
-use super::super::geometry::{GeometryError, geometry_names, read_voxels};
+use super::super::geometry::{GeometryError, read_voxels};
 use super::boundary::stretch;
 use super::build::Note;
 use super::dispersion::dispersion;
 use super::error::Problem;
 use super::excitation::excitation_file;
 use super::lines::Command;
+use super::outputs;
 use super::shapes;
 use super::sources;
 use super::values::Parameters;
 use crate::files::nearest_name;
-use crate::model::{Axis, GeometryFile, Material, MaterialId, Model, Object, Receiver};
+use crate::model::{Axis, Material, MaterialId, Model, Object, Receiver};
 
 /// Reads one of the commands that may stand any number of times.
 pub(super) fn apply(
@@ -40,7 +42,8 @@ pub(super) fn apply(
         "plate" => shapes::plate(model, command),
         "edge" => shapes::edge(model, command),
         "cylinder" => cylinder(model, command),
-        "geometry_objects_write" => geometry_objects_write(model, command, notes),
+        "snapshot" => outputs::snapshot(model, command),
+        "geometry_objects_write" => outputs::geometry_objects_write(model, command, notes),
         _ => geometry_objects_read(model, path, command),
     }
 }
@@ -226,32 +229,6 @@ fn geometry_objects_read(model: &mut Model, path: &Path, command: &Command<'_>) 
     }
     let voxels = read_voxels(model, &file, database, origin, averaging)?;
     model.objects.push(Object::Voxels(voxels));
-    Ok(())
-}
-
-fn geometry_objects_write(model: &mut Model, command: &Command<'_>, notes: &mut Vec<Note>) -> Result<(), Problem> {
-    let p = Parameters::of(command, "X1 Y1 Z1 X2 Y2 Z2 FILE", |n| n == 7)?;
-    let (lower, upper, file) = (p.point(0)?, p.point(3)?, p.word(6)?);
-    for axis in [Axis::X, Axis::Y, Axis::Z] {
-        let (low, high) = (lower[axis.index()], upper[axis.index()]);
-        if model.grid.node(axis.index(), low) >= model.grid.node(axis.index(), high) {
-            return Err(Problem::NoCells { command: p.command().into(), axis: axis.name(), lower: low, upper: high });
-        }
-    }
-    inside(model, "corner of the block", lower)?;
-    inside(model, "corner of the block", upper)?;
-    let names =
-        geometry_names(file).ok_or_else(|| p.not_one_of(file, "a file name", "bed, bed.h5 or any other".into()))?;
-    let taken = model.geometry_files.iter().filter_map(|known| geometry_names(&known.file)).flatten();
-    if taken.into_iter().any(|name| names.contains(&name)) {
-        return Err(Problem::DefinedTwice { what: "geometry file", id: file.into() });
-    }
-    model.geometry_files.push(GeometryFile { lower, upper, file: file.into() });
-    let text = format!(
-        "`#geometry_objects_write` puts the cells into `{}`, not gprMax's `/ID`, `/rigidE` and `/rigidH`: plates, sheets and averaging flags are not in it",
-        names[0].display()
-    );
-    notes.push(Note { line: command.line, text });
     Ok(())
 }
 

@@ -1,0 +1,71 @@
+//! The commands that ask for files beside the traces: blocks of geometry, snapshots.
+
+use std::path::Path;
+
+use super::super::geometry::geometry_names;
+use super::build::Note;
+use super::error::Problem;
+use super::lines::Command;
+use super::multiple::inside;
+use super::values::Parameters;
+use crate::model::{Axis, GeometryFile, Model, Snapshot, SnapshotFormat, SnapshotTime};
+
+pub(super) fn geometry_objects_write(
+    model: &mut Model,
+    command: &Command<'_>,
+    notes: &mut Vec<Note>,
+) -> Result<(), Problem> {
+    let p = Parameters::of(command, "X1 Y1 Z1 X2 Y2 Z2 FILE", |n| n == 7)?;
+    let (lower, upper, file) = (p.point(0)?, p.point(3)?, p.word(6)?);
+    for axis in [Axis::X, Axis::Y, Axis::Z] {
+        let (low, high) = (lower[axis.index()], upper[axis.index()]);
+        if model.grid.node(axis.index(), low) >= model.grid.node(axis.index(), high) {
+            return Err(Problem::NoCells { command: p.command().into(), axis: axis.name(), lower: low, upper: high });
+        }
+    }
+    inside(model, "corner of the block", lower)?;
+    inside(model, "corner of the block", upper)?;
+    let names =
+        geometry_names(file).ok_or_else(|| p.not_one_of(file, "a file name", "bed, bed.h5 or any other".into()))?;
+    let taken = model.geometry_files.iter().filter_map(|known| geometry_names(&known.file)).flatten();
+    if taken.into_iter().any(|name| names.contains(&name)) {
+        return Err(Problem::DefinedTwice { what: "geometry file", id: file.into() });
+    }
+    model.geometry_files.push(GeometryFile { lower, upper, file: file.into() });
+    let text = format!(
+        "`#geometry_objects_write` puts the cells into `{}`, not gprMax's `/ID`, `/rigidE` and `/rigidH`: plates, sheets and averaging flags are not in it",
+        names[0].display()
+    );
+    notes.push(Note { line: command.line, text });
+    Ok(())
+}
+
+/// A snapshot; of the file's name gprMax takes what stands behind the last `/`.
+pub(super) fn snapshot(model: &mut Model, command: &Command<'_>) -> Result<(), Problem> {
+    let p = Parameters::of(command, "X1 Y1 Z1 X2 Y2 Z2 DX DY DZ TIME|STEP FILE[.h5|.vtkhdf]", |n| n == 11)?;
+    let (lower, upper, spacing) = (p.point(0)?, p.point(3)?, p.point(6)?);
+    let at = match p.word(9)?.parse::<i64>() {
+        Ok(step) => {
+            p.check("the step", step as f64, step >= 0, "0 or more")?;
+            SnapshotTime::Iteration(step as usize)
+        }
+        Err(_) => SnapshotTime::Seconds(p.number(9, "a time in seconds or a step")?),
+    };
+    let word = p.word(10)?;
+    let path = Path::new(word);
+    let name = path.file_stem().and_then(|stem| stem.to_str()).filter(|_| !word.ends_with(['/', '.']));
+    let name = name.ok_or_else(|| p.not_one_of(word, "a file name", "wave, wave.h5 or any other".into()))?;
+    let format = match path.extension().and_then(|ending| ending.to_str()) {
+        None | Some("vtkhdf") => SnapshotFormat::VtkHdf,
+        Some("h5") => SnapshotFormat::Hdf5,
+        Some(_) => return Err(p.not_one_of(word, "the file of a snapshot", format!("{name}.h5, {name}.vtkhdf"))),
+    };
+    let snapshot = Snapshot { lower, upper, spacing, at, name: name.into(), format };
+    snapshot.step(model)?;
+    snapshot.cells(model)?;
+    if model.snapshots.iter().any(|known| known.name == snapshot.name && known.format == snapshot.format) {
+        return Err(Problem::DefinedTwice { what: "snapshot", id: word.into() });
+    }
+    model.snapshots.push(snapshot);
+    Ok(())
+}
