@@ -1,11 +1,16 @@
-//! Shapes and where they are: discs, the areas they share with strips and rectangles, and the grid of their neighbours.
+//! Shapes and where they are: discs and balls, what they share with strips, rectangles and boxes, and the grid of their
+//! neighbours.
 
 mod area;
+mod ball;
 mod disc;
+mod half_space;
 mod neighbours;
 mod segment;
 
 pub use area::disc_rectangle_area;
+pub use ball::{ball_box_volume, ball_column_volume};
 pub use disc::Disc;
+pub use half_space::half_space_share;
 pub use neighbours::NeighbourGrid;
 pub use segment::{area_below, area_between};

@@ -17,8 +17,8 @@ pub enum Averaging {
     /// By gprMax's rules: snapped shapes, the mean of the four cells around an edge.
     #[default]
     Cells,
-    /// The mean over the edge's own square, from the true shapes of boxes and of cylinders along z. The shapes' own
-    /// averaging flags have no say; conductors keep their cells.
+    /// The mean over the edge's own square or, in space, box, from the true shapes: in a plane of boxes and of cylinders
+    /// along z, in space of all that have a volume. The shapes' own averaging flags have no say; conductors keep their cells.
     Shapes,
 }
 

@@ -23,6 +23,7 @@ mod sampled;
 mod snapshot;
 mod source;
 mod spec;
+mod volume;
 mod waveform;
 
 pub use absorbing::{AbsorbingProfile, Formulation, Grading, Stretch};

@@ -4,7 +4,7 @@
 
 use std::time::Instant;
 
-use ballast_gpr::model::{Grid, Material, Model, Object, TimeWindow, paint, paint3};
+use ballast_gpr::model::{Averaging, Grid, Material, Model, Object, TimeWindow, paint, paint3};
 use ballast_gpr::raster::build_model;
 use ballast_gpr::scene::{GeometryKind, SceneSpec, resolve};
 use ballast_gpr::units::Metres;
@@ -50,7 +50,23 @@ fn main() {
         let [nx, ny, _] = model.grid.cells;
         println!("{name:<28}{:>4} objects {nx:>5} x {ny:<5}{:9.2} ms", model.objects.len(), best(|| paint(&model)));
     }
-    for (name, model) in [("500 balls", balls(true)), ("500 balls without averaging", balls(false))] {
+    let mut shapes = balls(true);
+    shapes.averaging = Averaging::Shapes;
+    // On a lattice none overlaps, as stones do not.
+    let mut apart = shapes.clone();
+    for (n, object) in apart.objects.iter_mut().enumerate() {
+        if let Object::Sphere { centre, radius, .. } = object {
+            *centre = [n % 10, n / 10 % 8, n / 80].map(|at| 0.03 + 0.061 * at as f64);
+            *radius = radius.min(0.03);
+        }
+    }
+    let of_balls = [
+        ("500 balls", balls(true)),
+        ("500 balls without averaging", balls(false)),
+        ("500 balls, shapes", shapes),
+        ("500 balls apart, shapes", apart),
+    ];
+    for (name, model) in of_balls {
         println!("{name:<28}{:>11} cells  {:9.2} ms", model.grid.cell_count(), best(|| paint3(&model)));
     }
 }

@@ -5,10 +5,18 @@
 pub enum PaintError {
     /// An object of which an edge's share is not known.
     #[error(
-        "object {number} has no true shape in the plane: a mean over shapes takes boxes and cylinders along z, in two \
-         dimensions\n\nhint: `--smoothing edges`, or leave `## ballast-gpr: averaging shapes` out"
+        "object {number} has no true shape in the plane: there a mean over shapes takes boxes and cylinders along z\n\nhint: `--smoothing edges`, or leave `## ballast-gpr: averaging shapes` out"
     )]
     NoShare {
+        /// Place in the list of objects, from 1.
+        number: usize,
+    },
+    /// An object without volume, of which no box has a share.
+    #[error(
+        "object {number} has no volume, and no share in a mean over shapes, unless it conducts perfectly\n\n\
+         hint: give it a thickness, or leave `## ballast-gpr: averaging shapes` out"
+    )]
+    NoVolume {
         /// Place in the list of objects, from 1.
         number: usize,
     },

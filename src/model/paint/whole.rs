@@ -11,6 +11,7 @@ use super::settle::Settled;
 use super::solid::{Solid, description, solids};
 use crate::model::averaging::average_shapes;
 use crate::model::palette::{FaceMaterial, Palette};
+use crate::model::volume::average_volumes;
 use crate::model::{Averaging, EdgeMaterial, Indices, Material, MaterialId, Model, Painted, Painted3};
 
 /// Paints the objects of a model that is invariant along z.
@@ -42,13 +43,10 @@ pub fn paint(model: &Model) -> Result<Painted, PaintError> {
 /// Holds eight bytes a cell while it paints, and five when it is done (with up to 256 distinct edge materials).
 ///
 /// # Errors
-/// When an object fills no cell or has no such material.
+/// When an object fills no cell or has no such material, or has no volume where means over volumes are asked for.
 pub fn paint3(model: &Model) -> Result<Painted3, PaintError> {
-    if model.averaging == Averaging::Shapes && !model.objects.is_empty() {
-        return Err(PaintError::NoShare { number: 1 });
-    }
     let whole = Whole::new(model, Layout::new(model.grid, false))?;
-    Ok(Painted3 {
+    let mut painted = Painted3 {
         cells: model.grid.cells,
         solid: whole.solid,
         palette: whole.palette,
@@ -56,7 +54,11 @@ pub fn paint3(model: &Model) -> Result<Painted3, PaintError> {
         face_palette: whole.face_palette,
         faces: whole.faces,
         averaged_edges: whole.averaged,
-    })
+    };
+    if model.averaging == Averaging::Shapes {
+        average_volumes(model, &mut painted)?;
+    }
+    Ok(painted)
 }
 
 /// All chunks put together, along the axes of the layout.
