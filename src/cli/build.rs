@@ -37,7 +37,7 @@ pub struct BuildArgs {
     /// Build NUM siblings with seeds counted from --seed, each in its own folder below --out.
     #[arg(long, value_name = "NUM", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub realisations: u32,
-    /// Choose the cheapest cell size, smoothing and order whose error the cost table gives as at most this (see `cost fdtd2d`).
+    /// Choose the cheapest cell size, smoothing and order, with absorbing cells to match, whose error the cost table gives as at most this (see `cost fdtd2d`).
     #[arg(long, value_name = "SHARE", conflicts_with_all = ["cell", "smoothing", "order"])]
     pub tolerance: Option<Share>,
     /// Template for the gprMax input in place of the built-in one.
@@ -61,7 +61,7 @@ pub fn run(args: &BuildArgs) -> Result<(), CliError> {
         let choice = cost_choice::choose(tolerance, spec.antenna.frequency)?;
         eprintln!("{}", choice.sentence());
         (spec.grid.cell, spec.grid.smoothing) = (choice.cell, choice.smoothing);
-        spec.grid.order = choice.order;
+        (spec.grid.order, spec.grid.absorbing_cells) = (choice.order, choice.absorbing_cells);
     }
     let template = args
         .template

@@ -4,7 +4,7 @@ use crate::cli::error::{CliError, Kind};
 use crate::gprmax;
 use crate::model::Order;
 use crate::scene::Smoothing;
-use crate::study::CostTable;
+use crate::study::{CostTable, absorbing_cells};
 use crate::units::{Hertz, Metres, Share};
 
 /// The table that is built in: errors hold everywhere, times are those of the machine that made it.
@@ -21,6 +21,8 @@ pub struct Choice {
     pub smoothing: Smoothing,
     /// Order of the differences.
     pub order: Order,
+    /// Absorbing cells on every open side.
+    pub absorbing_cells: usize,
     error: f64,
     tolerance: Share,
     from: &'static str,
@@ -36,10 +38,11 @@ impl Choice {
             Smoothing::Shapes => "shapes",
         };
         format!(
-            "tolerance {}: cells of {} with smoothing `{smoothing}` and order {} are the cheapest that keep it ({:.1} % by {})",
+            "tolerance {}: cells of {} with smoothing `{smoothing}`, order {} and {} absorbing cells are the cheapest that keep it ({:.1} % by {})",
             self.tolerance,
             self.cell.in_unit("mm"),
             self.order,
+            self.absorbing_cells,
             100.0 * self.error,
             self.from
         )
@@ -85,6 +88,8 @@ pub fn choose(tolerance: Share, frequency: Hertz) -> Result<Choice, CliError> {
         cell,
         smoothing: point.setting.smoothing,
         order: point.setting.order,
+        // Of the depth that the table's runs had, in wavelengths.
+        absorbing_cells: absorbing_cells(point.setting.cell),
         error: point.error,
         tolerance,
         from,

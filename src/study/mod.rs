@@ -6,6 +6,6 @@ mod echoes;
 mod statistics;
 
 pub use case::{Case, CaseError, Expected, Row, Verdict};
-pub use cost::{CostError, CostPoint, CostScene, CostSetting, CostSolver, CostTable, cost_curve};
+pub use cost::{CostError, CostPoint, CostScene, CostSetting, CostSolver, CostTable, absorbing_cells, cost_curve};
 pub use echoes::{EchoError, EchoTime, Echoes, PlateReference, plate_reference, simulate_echoes};
 pub use statistics::{MeanAndSpread, fit_exponent};
