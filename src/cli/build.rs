@@ -58,7 +58,7 @@ pub struct BuildArgs {
 pub fn run(args: &BuildArgs) -> Result<(), CliError> {
     let mut spec = args.args.spec(args.scene.as_deref())?;
     if let Some(tolerance) = args.tolerance {
-        let choice = cost_choice::choose(tolerance, spec.antenna.frequency)?;
+        let choice = cost_choice::choose(cost_choice::OwnTable::Plane, tolerance, spec.antenna.frequency)?;
         eprintln!("{}", choice.sentence());
         (spec.grid.cell, spec.grid.smoothing) = (choice.cell, choice.smoothing);
         (spec.grid.order, spec.grid.absorbing_cells) = (choice.order, choice.absorbing_cells);

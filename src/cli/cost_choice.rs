@@ -2,15 +2,37 @@
 
 use crate::cli::error::{CliError, Kind};
 use crate::gprmax;
-use crate::model::Order;
+use crate::model::{Model, Order};
 use crate::scene::Smoothing;
 use crate::study::{CostTable, absorbing_cells};
 use crate::units::{Hertz, Metres, Share};
 
-/// The table that is built in: errors hold everywhere, times are those of the machine that made it.
-const BUILT_IN: &str = include_str!("../../validation/cost/fdtd2d.json");
-/// Name of the user's own table in the cache folder.
-pub const OWN_TABLE: &str = "cost-fdtd2d.json";
+/// A table of the user's own, in the cache folder, and the one built in: errors hold everywhere, times are those of the
+/// machine that made it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OwnTable {
+    /// In two dimensions.
+    Plane,
+    /// In three dimensions.
+    Space,
+}
+
+impl OwnTable {
+    /// Name of its files, without ending.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Plane => "cost-fdtd2d",
+            Self::Space => "cost-fdtd3d",
+        }
+    }
+
+    const fn built_in(self) -> &'static str {
+        match self {
+            Self::Plane => include_str!("../../validation/cost/fdtd2d.json"),
+            Self::Space => include_str!("../../validation/cost/fdtd3d.json"),
+        }
+    }
+}
 
 /// A setting and why it was chosen.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,12 +53,7 @@ pub struct Choice {
 impl Choice {
     /// What is chosen, in a sentence.
     pub fn sentence(&self) -> String {
-        let smoothing = match self.smoothing {
-            Smoothing::None => "none",
-            Smoothing::Edges => "edges",
-            Smoothing::Area => "area",
-            Smoothing::Shapes => "shapes",
-        };
+        let smoothing = self.smoothing.name();
         format!(
             "tolerance {}: cells of {} with smoothing `{smoothing}`, order {} and {} absorbing cells are the cheapest that keep it ({:.1} % by {})",
             self.tolerance,
@@ -49,27 +66,42 @@ impl Choice {
     }
 }
 
-/// The user's own table, if `cost fdtd2d` was run on this machine, else the built-in one.
+/// The user's own table, if `cost fdtd2d --keep` (or `fdtd3d`) was run on this machine, else the built-in one.
 ///
 /// # Errors
 /// When a table cannot be read.
-pub fn table() -> Result<(CostTable, &'static str), CliError> {
-    let own = gprmax::install::cache_folder().ok().map(|folder| folder.join(OWN_TABLE)).filter(|path| path.is_file());
+pub fn table(of: OwnTable) -> Result<(CostTable, &'static str), CliError> {
+    let file = |folder: std::path::PathBuf| folder.join(format!("{}.json", of.name()));
+    let own = gprmax::install::cache_folder().ok().map(file).filter(|path| path.is_file());
     let (text, from) = match &own {
         Some(path) => (crate::files::read_text(path)?, "your own cost table"),
-        None => (BUILT_IN.to_string(), "the built-in cost table"),
+        None => (of.built_in().to_string(), "the built-in cost table"),
     };
     let table =
         serde_json::from_str(&text).map_err(|error| CliError::input(format!("{from} cannot be read: {error}")))?;
     Ok((table, from))
 }
 
+/// The cheapest setting that keeps a tolerance for a model, by the table of its dimensions.
+///
+/// # Errors
+/// When no source of the model has a pulse with a frequency, or no setting keeps it.
+pub fn choose_for(model: &Model, tolerance: Share) -> Result<Choice, CliError> {
+    let pulses = model.sources.iter().filter_map(|source| model.waveforms.get(source.waveform()));
+    let highest = pulses.map(|pulse| pulse.frequency).filter(|f| *f > 0.0).max_by(f64::total_cmp);
+    let Some(frequency) = highest else {
+        return Err(CliError::input("no source of this model has a pulse with a frequency, so no wavelength is known"));
+    };
+    let of = if model.invariant_axis().is_some() { OwnTable::Plane } else { OwnTable::Space };
+    choose(of, tolerance, Hertz(frequency))
+}
+
 /// Chooses the cheapest setting that keeps a tolerance at a centre frequency.
 ///
 /// # Errors
 /// When no setting of the table keeps it.
-pub fn choose(tolerance: Share, frequency: Hertz) -> Result<Choice, CliError> {
-    let (table, from) = table()?;
+pub fn choose(of: OwnTable, tolerance: Share, frequency: Hertz) -> Result<Choice, CliError> {
+    let (table, from) = table(of)?;
     let Some(point) = table.cheapest(tolerance) else {
         let best = table.best().map_or(f64::NAN, |point| point.error);
         return Err(CliError::new(

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use crate::cli::cost_choice;
 use crate::cli::error::CliError;
 use crate::cli::scene_args::SceneArgs;
 use crate::cli::table::Report;
@@ -13,7 +14,7 @@ use crate::gprmax;
 use crate::model::{self, Effects, Model, Resolution};
 use crate::raster;
 use crate::scene::{self, EquivalentStone, Scene, SceneSpec};
-use crate::units::Metres;
+use crate::units::{Metres, Share};
 
 /// Explain a scene before anything runs.
 #[derive(Debug, Clone, Args)]
@@ -26,6 +27,9 @@ pub struct ExplainArgs {
     /// Threads that the prediction is for [default: all cores].
     #[arg(long, value_name = "NUM")]
     pub threads: Option<NonZeroUsize>,
+    /// Say which cell size, averaging and order keep this error, by the cost table of two or of three dimensions.
+    #[arg(long, value_name = "SHARE", conflicts_with = "json")]
+    pub tolerance: Option<Share>,
     /// Print as JSON.
     #[arg(long)]
     pub json: bool,
@@ -125,6 +129,9 @@ pub fn run(args: &ExplainArgs) -> Result<(), CliError> {
         prediction.cell_steps as f64,
         100.0 * prediction.share_saved
     );
+    if let Some(tolerance) = args.tolerance {
+        println!("{}", cost_choice::choose_for(&model, tolerance)?.sentence());
+    }
     if let Some(resolution) = resolution.filter(Resolution::is_coarse) {
         eprintln!("warning: {resolution}");
     }

@@ -39,4 +39,4 @@ pub use keeping::{Keeping, Snapshots};
 pub use predict::{Prediction, memory, predict};
 pub use reach::{Reach, reach};
 pub use solver::{Fdtd, Precision, Stats, Stepping};
-pub use three::predict_three;
+pub use three::{memory_three, predict_three};

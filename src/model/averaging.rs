@@ -17,16 +17,21 @@ pub enum Averaging {
     /// By gprMax's rules: snapped shapes, the mean of the four cells around an edge.
     #[default]
     Cells,
-    /// The mean over the edge's own square or, in space, box, from the true shapes: in a plane of boxes and of cylinders
-    /// along z, in space of all that have a volume. The shapes' own averaging flags have no say; conductors keep their cells.
+    /// The arithmetic mean over the edge's own square or, in space, box, from the true shapes: in a plane of boxes and of
+    /// cylinders along z, in space of all that have a volume. The shapes' own averaging flags have no say; conductors keep
+    /// their cells.
+    Volumes,
+    /// As `Volumes`, and between the arithmetic and the harmonic mean as the surface in the box lies: an edge along a
+    /// surface takes the first, one across it the second. In a plane edges lie along all surfaces.
     Shapes,
 }
 
 impl Averaging {
-    /// `cells` or `shapes`.
+    /// `cells`, `volumes` or `shapes`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Cells => "cells",
+            Self::Volumes => "volumes",
             Self::Shapes => "shapes",
         }
     }

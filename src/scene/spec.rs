@@ -281,6 +281,18 @@ pub enum Smoothing {
     Shapes,
 }
 
+impl Smoothing {
+    /// The word for it in a scene.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Edges => "edges",
+            Self::Area => "area",
+            Self::Shapes => "shapes",
+        }
+    }
+}
+
 /// Cells, smoothing and time.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]

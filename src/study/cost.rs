@@ -4,10 +4,10 @@ use std::time::Instant;
 
 use crate::compare;
 use crate::forward::{Forward, ForwardError, OnProgress};
-use crate::model::Order;
+use crate::model::{Model, Order};
 use crate::raster;
 use crate::scene::{Scene, SceneError, SceneSpec, Smoothing, resolve};
-use crate::trace::AScan;
+use crate::trace::{AScan, Component};
 use crate::units::{Metres, Seconds, Share};
 
 use super::echoes::EchoError;
@@ -41,7 +41,28 @@ pub struct CostPoint {
     pub cell_steps: u64,
 }
 
-/// The scene whose trace is judged: the tank, narrower, with 20 cm of fouling.
+/// A scene whose trace is judged.
+pub trait CostSubject {
+    /// The scene with a setting.
+    ///
+    /// # Errors
+    /// When it cannot be built.
+    fn model(&self, setting: CostSetting) -> Result<Model, CostError>;
+    /// Centre frequency, Hz.
+    fn frequency(&self) -> f64;
+    /// Time window, s.
+    fn window(&self) -> f64;
+    /// The component that is judged, at the first receiver.
+    fn component(&self) -> Component;
+    /// What can happen where two materials meet. The reference is the limit of the second-order runs with the first.
+    fn smoothings(&self) -> &'static [Smoothing];
+    /// Orders of differences.
+    fn orders(&self) -> &'static [Order];
+    /// Duration of a step of order 4, in steps of order 2.
+    fn step_of_order_four(&self) -> f64;
+}
+
+/// The tank, narrower, with 20 cm of fouling, in two dimensions.
 #[derive(Debug, Clone)]
 pub struct CostScene {
     spec: SceneSpec,
@@ -64,6 +85,9 @@ pub struct CostTable {
     /// Relative L2 difference between their limit and the reference: an upper bound of the reference's own error.
     #[serde(default)]
     pub limits_differ: f64,
+    /// Duration of a step of order 4, in steps of order 2.
+    #[serde(default = "step_of_order_four")]
+    pub step_of_order_four: f64,
     /// The points.
     pub points: Vec<CostPoint>,
 }
@@ -92,10 +116,36 @@ impl CostScene {
         spec.grid.absorbing_cells = absorbing_cells(setting.cell);
         resolve(&spec)
     }
+}
 
-    /// Centre frequency, Hz.
-    pub fn frequency(&self) -> f64 {
+impl CostSubject for CostScene {
+    fn model(&self, setting: CostSetting) -> Result<Model, CostError> {
+        Ok(raster::build_model(&self.with(setting)?).map_err(EchoError::from)?)
+    }
+
+    fn frequency(&self) -> f64 {
         self.spec.antenna.frequency.si()
+    }
+
+    fn window(&self) -> f64 {
+        self.spec.grid.time_window.si()
+    }
+
+    fn component(&self) -> Component {
+        Component::Ez
+    }
+
+    fn smoothings(&self) -> &'static [Smoothing] {
+        &[Smoothing::Area, Smoothing::None, Smoothing::Edges, Smoothing::Shapes]
+    }
+
+    fn orders(&self) -> &'static [Order] {
+        &[Order::Second, Order::Fourth]
+    }
+
+    /// 2.3 to 2.6 were measured.
+    fn step_of_order_four(&self) -> f64 {
+        2.4
     }
 }
 
@@ -114,8 +164,10 @@ pub struct CostSolver<'a> {
     pub solver: &'a dyn Forward,
     /// Whether it computes in double precision.
     pub double_precision: bool,
+    /// Finer cells than this are left out.
+    pub finest: Metres,
     /// Memory for a model, bytes.
-    pub bytes: &'a dyn Fn(&crate::model::Model) -> Result<u64, ForwardError>,
+    pub bytes: &'a dyn Fn(&Model) -> Result<u64, ForwardError>,
 }
 
 /// Why there is no cost curve.
@@ -141,49 +193,51 @@ const ABSORBING_DEPTH: f64 = 0.04;
 /// Step of the common time axis on which traces are compared, s: a fiftieth of the shortest period that matters (3 GHz).
 const COMMON_STEP: f64 = 5e-12;
 
-/// Measures the curve over `cells` (each half the one before, coarsest first), every smoothing, both orders of differences
+/// Measures the curve over `cells` (each half the one before, coarsest first), every smoothing, all orders of differences
 /// and every solver.
 ///
-/// The reference is the limit of the runs of order 2 with area smoothing in the most precise solver, by Richardson
-/// extrapolation of the traces with the order measured on the three finest cells; the limit of those of order 4 from the
-/// true shapes, found in the same way, tells how far it can be trusted.
+/// The reference is the limit of the runs of order 2 with the subject's first smoothing in the most precise solver that takes
+/// all cells, by Richardson extrapolation of the traces with the order measured on the three finest cells; the limit of those
+/// of order 4 (or else 2) from the true shapes, found in the same way, tells how far it can be trusted.
 ///
 /// # Errors
 /// See [`CostError`].
 pub fn cost_curve(
-    scene: &CostScene,
+    subject: &dyn CostSubject,
     cells: &[Metres],
     solvers: &[CostSolver<'_>],
     on_point: &dyn Fn(usize, usize),
     on_progress: OnProgress<'_>,
 ) -> Result<CostTable, CostError> {
-    if cells.len() < 3 {
+    let Some(finest) = cells.last().filter(|_| cells.len() >= 3) else {
         return Err(CostError::TooFewCells { cells: cells.len() });
-    }
-    let smoothings = [Smoothing::None, Smoothing::Edges, Smoothing::Area, Smoothing::Shapes];
-    let orders = [Order::Second, Order::Fourth];
-    let total = cells.len() * smoothings.len() * orders.len() * solvers.len();
+    };
+    let (smoothings, orders) = (subject.smoothings(), subject.orders());
+    let takes = |solver: &CostSolver<'_>, cell: &Metres| cell.si() >= solver.finest.si() * (1.0 - 1e-9);
+    let sizes: usize = solvers.iter().map(|solver| cells.iter().filter(|cell| takes(solver, cell)).count()).sum();
+    let total = sizes * smoothings.len() * orders.len();
     let mut runs: Vec<(CostPoint, AScan)> = Vec::new();
     for solver in solvers {
-        for &cell in cells {
-            for order in orders {
+        for &cell in cells.iter().filter(|cell| takes(solver, cell)) {
+            for &order in orders {
                 let mut alone = None;
-                for smoothing in smoothings {
+                for &smoothing in smoothings {
                     let setting = CostSetting { cell, smoothing, order, double_precision: solver.double_precision };
-                    runs.push(one_run(scene, setting, solver, &mut alone, on_progress)?);
+                    runs.push(one_run(subject, setting, solver, &mut alone, on_progress)?);
                     on_point(runs.len(), total);
                 }
             }
         }
     }
-    let most_precise = solvers.iter().any(|solver| solver.double_precision);
+    let most_precise = solvers.iter().any(|solver| solver.double_precision && takes(solver, finest));
     let limit_of = |smoothing: Smoothing, order: Order| {
         let of = |p: &CostSetting| p.smoothing == smoothing && p.order == order && p.double_precision == most_precise;
         let traces: Vec<&AScan> = runs.iter().filter(|(p, _)| of(&p.setting)).map(|(_, trace)| trace).collect();
         limit(&traces).ok_or(CostError::TooFewCells { cells: traces.len() })
     };
-    let (limit, measured_order, last) = limit_of(Smoothing::Area, Order::Second)?;
-    let (other, order_of_shapes, _) = limit_of(Smoothing::Shapes, Order::Fourth)?;
+    let (limit, measured_order, last) = limit_of(smoothings[0], Order::Second)?;
+    let best = if orders.contains(&Order::Fourth) { Order::Fourth } else { Order::Second };
+    let (other, order_of_shapes, _) = limit_of(Smoothing::Shapes, best)?;
     let size = norm(&limit.samples);
     let finest_difference = last / size;
     let limits_differ = distance(&limit, &other) / size;
@@ -193,11 +247,12 @@ pub fn cost_curve(
         .collect();
     Ok(CostTable {
         format_version: 1,
-        frequency: scene.frequency(),
+        frequency: subject.frequency(),
         measured_order,
         finest_difference,
         order_of_shapes,
         limits_differ,
+        step_of_order_four: subject.step_of_order_four(),
         points,
     })
 }
@@ -215,22 +270,25 @@ fn limit(traces: &[&AScan]) -> Option<(AScan, f64, f64)> {
 
 /// Runs a setting, and once per cell size and order the antenna alone; the difference holds the echoes alone.
 fn one_run(
-    scene: &CostScene,
+    subject: &dyn CostSubject,
     setting: CostSetting,
     solver: &CostSolver<'_>,
     alone: &mut Option<AScan>,
     on_progress: OnProgress<'_>,
 ) -> Result<(CostPoint, AScan), CostError> {
-    let model = raster::build_model(&scene.with(setting)?).map_err(EchoError::from)?;
+    let model = subject.model(setting)?;
     let started = Instant::now();
-    let trace = radar_trace(solver.solver, &model, on_progress)?;
+    let trace = radar_trace(solver.solver, &model, subject.component(), on_progress)?;
     let seconds = started.elapsed().as_secs_f64();
     let direct = match alone {
         Some(direct) => direct,
-        None => alone.insert(radar_trace(solver.solver, &raster::antenna_alone(&model), on_progress)?),
+        None => {
+            let antenna = raster::antenna_alone(&model);
+            alone.insert(radar_trace(solver.solver, &antenna, subject.component(), on_progress)?)
+        }
     };
     let (echoes, _) = compare::subtract_reference(&trace, direct);
-    let window = scene.spec.grid.time_window.si();
+    let window = subject.window();
     let trace = compare::resample(&echoes, Seconds(0.0), Seconds(COMMON_STEP), (window / COMMON_STEP) as usize);
     let cell_steps = (model.grid.cell_count() * model.iterations()) as u64;
     let point = CostPoint { setting, error: f64::NAN, seconds, bytes: (solver.bytes)(&model)?, cell_steps };
@@ -239,10 +297,13 @@ fn one_run(
 
 fn radar_trace(
     solver: &dyn Forward,
-    model: &crate::model::Model,
+    model: &Model,
+    component: Component,
     on_progress: OnProgress<'_>,
 ) -> Result<AScan, EchoError> {
-    solver.solve(model, on_progress).map_err(EchoError::from)?.radar_trace().cloned().ok_or(EchoError::NoTrace)
+    let traces = solver.solve(model, on_progress).map_err(EchoError::from)?;
+    let first = traces.receivers.first().and_then(|receiver| receiver.component(component));
+    first.cloned().ok_or(EchoError::NoTrace)
 }
 
 fn norm(samples: &[f64]) -> f64 {
@@ -253,11 +314,9 @@ fn distance(a: &AScan, b: &AScan) -> f64 {
     a.samples.iter().zip(&b.samples).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
 }
 
-impl CostPoint {
-    /// Cell-steps in those of order 2: a step of order 4 takes about 2.4 times as long (2.3 to 2.6 were measured).
-    fn work(&self) -> f64 {
-        self.cell_steps as f64 * if self.setting.order == Order::Fourth { 2.4 } else { 1.0 }
-    }
+/// For tables of an earlier version.
+fn step_of_order_four() -> f64 {
+    2.4
 }
 
 impl CostTable {
@@ -277,10 +336,15 @@ impl CostTable {
                 })
                 .all(|other| other.error <= tolerance.si())
         };
+        // Cell-steps in those of order 2.
+        let work = |point: &CostPoint| {
+            let fourth = point.setting.order == Order::Fourth;
+            point.cell_steps as f64 * if fourth { self.step_of_order_four } else { 1.0 }
+        };
         self.points
             .iter()
             .filter(|point| !point.setting.double_precision && holds(point))
-            .min_by(|a, b| a.work().total_cmp(&b.work()).then(a.error.total_cmp(&b.error)))
+            .min_by(|a, b| work(a).total_cmp(&work(b)).then(a.error.total_cmp(&b.error)))
     }
 
     /// The smallest error that any setting reaches.
@@ -314,6 +378,7 @@ mod tests {
             finest_difference: 1e-3,
             order_of_shapes: 2.0,
             limits_differ: 0.0,
+            step_of_order_four: 2.4,
             points: vec![
                 point(0.008, Smoothing::Edges, 0.015), // by luck: the next finer one is worse
                 point(0.004, Smoothing::Edges, 0.05),

@@ -2,10 +2,14 @@
 
 mod case;
 mod cost;
+mod cost_space;
 mod echoes;
 mod statistics;
 
 pub use case::{Case, CaseError, Expected, Row, Verdict};
-pub use cost::{CostError, CostPoint, CostScene, CostSetting, CostSolver, CostTable, absorbing_cells, cost_curve};
+pub use cost::{
+    CostError, CostPoint, CostScene, CostSetting, CostSolver, CostSubject, CostTable, absorbing_cells, cost_curve,
+};
+pub use cost_space::CostBed;
 pub use echoes::{EchoError, EchoTime, Echoes, PlateReference, plate_reference, simulate_echoes};
 pub use statistics::{MeanAndSpread, fit_exponent};

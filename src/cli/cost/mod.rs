@@ -1,6 +1,6 @@
 //! `cost`: what accuracy costs in time, measured on this machine.
 
-mod fdtd2d;
+mod accuracy;
 mod growth;
 mod packing;
 mod roofline;
@@ -16,14 +16,15 @@ use crate::units::Metres;
 /// Measure error against time and memory, and draw the curve.
 #[derive(Debug, Clone, Args)]
 pub struct CostArgs {
-    /// What to measure: `fdtd2d`, the built-in solver over cell size, smoothing and precision; `packing`, the random
+    /// What to measure: `fdtd2d` and `fdtd3d`, the built-in solver over cell size, smoothing, order and precision; `packing`, the random
     /// sequential adsorption over the number of stones; `growth`, the built-in solver's time over the number of cells in two
     /// and three dimensions, beside what the machine's memory can give.
     #[arg(value_enum)]
     pub solver: CostName,
-    /// fdtd2d: finest cell; the others are its doubles up to 8 mm. Half a millimetre takes minutes.
-    #[arg(long, value_name = "LENGTH", default_value = "0.5mm")]
-    pub finest: Metres,
+    /// fdtd2d, fdtd3d: finest cell; the others are its doubles up to 8 mm (10 mm in three dimensions). The defaults take
+    /// minutes [default: 0.5 mm, in three dimensions 1.25 mm].
+    #[arg(long, value_name = "LENGTH")]
+    pub finest: Option<Metres>,
     /// packing: most stones; the others are thirds of it down to a thousand.
     #[arg(long, value_name = "NUM", default_value_t = 100_000)]
     pub stones: usize,
@@ -33,7 +34,7 @@ pub struct CostArgs {
     /// Folder for table (CSV, JSON) and figure [default: none are written].
     #[arg(long, value_name = "FOLDER")]
     pub out: Option<PathBuf>,
-    /// fdtd2d: keep the table in the cache folder, where `build --tolerance` reads it.
+    /// fdtd2d, fdtd3d: keep the table in the cache folder, where `--tolerance` reads it.
     #[arg(long)]
     pub keep: bool,
     /// Overwrite files that are there.
@@ -49,6 +50,8 @@ pub struct CostArgs {
 pub enum CostName {
     /// The built-in solver in two dimensions.
     Fdtd2d,
+    /// The built-in solver in three dimensions.
+    Fdtd3d,
     /// Random sequential adsorption and compaction.
     Packing,
     /// Growth of the solver's time with the number of cells.
@@ -64,7 +67,8 @@ pub fn run(args: &CostArgs) -> Result<(), CliError> {
         folder::prepare(folder, args.force)?;
     }
     match args.solver {
-        CostName::Fdtd2d => fdtd2d::run(args),
+        CostName::Fdtd2d => accuracy::run_plane(args),
+        CostName::Fdtd3d => accuracy::run_space(args),
         CostName::Packing => packing::run(args),
         CostName::Growth => growth::run(args),
     }

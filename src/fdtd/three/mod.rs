@@ -24,4 +24,4 @@ mod sheet;
 mod team;
 mod turn;
 
-pub use run::predict_three;
+pub use run::{memory_three, predict_three};

@@ -231,6 +231,14 @@ fn bytes<T: Number>(setup: &Setup3<'_>) -> u64 {
         + (poles * size_of::<T>() + samples * setup.iterations) as u64
 }
 
+/// Memory of the fields and coefficients of a three-dimensional model, bytes.
+///
+/// # Errors
+/// Whatever the solver cannot do, as [`Fdtd::solve_stats`] would say it.
+pub fn memory_three(model: &Model, painted: &Painted3, precision: Precision) -> Result<u64, FdtdError> {
+    Ok(bytes_needed(&Setup3::new(model, Cow::Borrowed(painted))?, precision))
+}
+
 /// Cells of the trial run of a prediction: about as many as the outer cache holds four times over.
 const TRIAL_CELLS: usize = 2_000_000;
 

@@ -24,6 +24,7 @@ pub(super) fn directives(text: &str) -> Result<Directives, (usize, Problem)> {
         match rest.trim().split_once(' ') {
             Some(("order", number)) => asked.order = number.parse().map_err(|_| unknown())?,
             Some(("averaging", "cells")) => asked.averaging = Averaging::Cells,
+            Some(("averaging", "volumes")) => asked.averaging = Averaging::Volumes,
             Some(("averaging", "shapes")) => asked.averaging = Averaging::Shapes,
             _ => return Err(unknown()),
         }

@@ -31,7 +31,7 @@ pub fn paint(model: &Model) -> Result<Painted, PaintError> {
         edge_z: edges.to_vec(),
         averaged_edges,
     };
-    if model.averaging == Averaging::Shapes {
+    if model.averaging != Averaging::Cells {
         average_shapes(model, &mut painted)?;
     }
     Ok(painted)
@@ -55,7 +55,7 @@ pub fn paint3(model: &Model) -> Result<Painted3, PaintError> {
         faces: whole.faces,
         averaged_edges: whole.averaged,
     };
-    if model.averaging == Averaging::Shapes {
+    if model.averaging != Averaging::Cells {
         average_volumes(model, &mut painted)?;
     }
     Ok(painted)

@@ -256,6 +256,41 @@ impl<'a> Body<'a> {
         Some(ball_column_volume(of(0), of(1), (z - centre[2]) / radii[2]) / volume)
     }
 
+    /// Squares of the parts of its surface's normal along x, y, z, within a box that it cuts; they add up to 1.
+    pub fn normal_squared(&self, region: &Region) -> [f64; 3] {
+        let middle = region.middle();
+        let squared = |normal: [f64; 3]| {
+            let length = dot(normal, normal);
+            if length > 0.0 { normal.map(|v| v * v / length) } else { [1.0 / 3.0; 3] }
+        };
+        // Of the faces that pass through the box, each as much as the others.
+        let flat =
+            |is_cut: &dyn Fn(usize) -> bool| squared(std::array::from_fn(|axis| if is_cut(axis) { 1.0 } else { 0.0 }));
+        let face = |axis: usize| {
+            let slack = NEGLIGIBLE * (region.high[axis] - region.low[axis]);
+            let is_within = |at: f64| at > region.low[axis] + slack && at < region.high[axis] - slack;
+            is_within(self.low[axis]) || is_within(self.high[axis])
+        };
+        match self.shape {
+            Shape::Box => flat(&face),
+            Shape::Ball { centre, radii } => {
+                squared(std::array::from_fn(|axis| (middle[axis] - centre[axis]) / radii[axis].powi(2)))
+            }
+            Shape::Rod { along, .. } if face(along) => flat(&|axis| axis == along),
+            Shape::Rod { along, centre, .. } => {
+                squared(std::array::from_fn(|axis| if axis == along { 0.0 } else { middle[axis] - centre[axis] }))
+            }
+            Shape::Parts(ref parts) => {
+                let cut = parts.iter().filter(|part| part.side(region).is_none());
+                squared(cut.map(|part| part.normal(middle)).next().unwrap_or_default())
+            }
+            Shape::Cells { spacing, .. } => flat(&|axis| {
+                let at = |v: f64| ((v - self.low[axis]) / spacing[axis] + NEGLIGIBLE).floor();
+                at(region.low[axis]) != at(region.high[axis] - 2.0 * NEGLIGIBLE * spacing[axis])
+            }),
+        }
+    }
+
     /// Whether two bodies are known to have no common volume.
     pub fn is_apart(&self, other: &Self) -> bool {
         let distance = |a: [f64; 3], b: [f64; 3], axes: &[usize]| {

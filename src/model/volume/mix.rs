@@ -79,11 +79,13 @@ impl Mixture {
     }
 
     /// Leaves out what is negligible and rounds the shares to 2⁻²⁴, what single precision holds, so that equal boxes have
-    /// equal bits wherever they are; sorted by material.
-    pub fn settle(&mut self) {
+    /// equal bits wherever they are; sorted by material. `along` names the material of an axis.
+    pub fn settle(&mut self, along: impl Fn(MaterialId) -> MaterialId) {
         const STEPS: f64 = (1u32 << 24) as f64;
         self.parts.retain(|(_, share)| *share > NEGLIGIBLE);
-        self.parts.iter_mut().for_each(|(_, share)| *share = (*share * STEPS).round() / STEPS);
+        for (material, share) in &mut self.parts {
+            (*material, *share) = (along(*material), (*share * STEPS).round() / STEPS);
+        }
         self.parts.sort_unstable_by_key(|(material, _)| *material);
     }
 }

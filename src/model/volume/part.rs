@@ -100,6 +100,18 @@ impl Part {
         }
     }
 
+    /// The normal of the surface near a point.
+    pub fn normal(&self, point: [f64; 3]) -> [f64; 3] {
+        match *self {
+            Self::HalfSpace { normal, .. } => normal,
+            Self::Mantle { .. } => self.mantle(point).1,
+            Self::Either([a, b]) => {
+                let off = |plane: ([f64; 3], f64)| (dot(plane.0, point) - plane.1).abs();
+                if off(a) < off(b) { a.0 } else { b.0 }
+            }
+        }
+    }
+
     /// Distance from the mantle (below zero inside), its gradient and the distance from the axis.
     fn mantle(&self, point: [f64; 3]) -> (f64, [f64; 3], f64) {
         let Self::Mantle { start, axis, radius, growth } = *self else { return (0.0, [0.0; 3], 0.0) };

@@ -2,11 +2,11 @@
 
 use rayon::prelude::*;
 
-use super::body::{Body, Side};
+use super::body::{Body, NEGLIGIBLE, Side};
 use super::mix::Mixture;
 use super::part::Region;
 use crate::model::palette::{EdgeMaterial, Palette};
-use crate::model::{Grid, Indices, MaterialId, Model, PaintError, Painted3};
+use crate::model::{Averaging, Grid, Indices, MaterialId, Model, PaintError, Painted3};
 
 /// Gives the inner edges of a painted model their means over the true shapes. Conductors keep their cells and take no part
 /// in a mean; an edge with a dispersive medium takes the one material that fills most of its box; faces stay as they are.
@@ -166,21 +166,19 @@ impl Job<'_> {
                     let value = if keeps {
                         None
                     } else if row.head[k] == NONE {
-                        let conducts = self.model.materials[row.base[k].index()].is_pec();
-                        (!conducts).then_some(Value::Pure(row.base[k]))
+                        let base = self.along(axis, row.base[k]);
+                        (!self.model.materials[base.index()].is_pec()).then_some(Value::Pure(base))
                     } else {
                         let region = region(grid, axis, [i, j, k]);
+                        row.bodies(k, &bodies, &mut cutting);
                         mixture.parts.clear();
                         match row.only(k).and_then(|index| Some((index, column.share(index, bodies[index], &region)?)))
                         {
                             Some((index, share)) => mixture.fill_with(bodies[index].material, share, row.base[k]),
-                            None => {
-                                row.bodies(k, &bodies, &mut cutting);
-                                mixture.fill(&region, &cutting, row.base[k], 1.0);
-                            }
+                            None => mixture.fill(&region, &cutting, row.base[k], 1.0),
                         }
-                        mixture.settle();
-                        self.value(&mixture)
+                        mixture.settle(|id| self.along(axis, id));
+                        self.value(&mixture, self.across(axis, &region, &cutting))
                     };
                     out.push(match value {
                         Some(Value::Pure(material)) => match last {
@@ -243,22 +241,48 @@ impl Job<'_> {
         }
     }
 
-    /// What an edge holds; `None` where conductors fill its box and yet it does not conduct.
-    fn value(&self, mixture: &Mixture) -> Option<Value> {
+    /// The material of edges along an axis where an object has three.
+    fn along(&self, axis: usize, id: MaterialId) -> MaterialId {
+        self.model.materials[id.index()].along(axis, id)
+    }
+
+    /// How far an edge lies across the surfaces in its box, `n_a²`: that of the bodies, by what they fill and leave free.
+    fn across(&self, axis: usize, region: &Region, bodies: &[&Body<'_>]) -> f64 {
+        match bodies {
+            _ if self.model.averaging != Averaging::Shapes => 0.0,
+            [body] => body.normal_squared(region)[axis],
+            _ => {
+                let weighed = bodies.iter().map(|body| {
+                    let share = body.share_of_part(region);
+                    (share * (1.0 - share) + NEGLIGIBLE, body.normal_squared(region)[axis])
+                });
+                let (sum, total) = weighed.fold((0.0, 0.0), |(s, t), (weight, n)| (s + weight * n, t + weight));
+                sum / total
+            }
+        }
+    }
+
+    /// What an edge holds that lies `across` the surfaces in its box (0: along them); `None` where conductors fill its box
+    /// and yet it does not conduct.
+    fn value(&self, mixture: &Mixture, across: f64) -> Option<Value> {
         let of = |id: MaterialId| &self.model.materials[id.index()];
         let parts = || mixture.parts.iter().filter(|(id, _)| !of(*id).is_pec());
-        let (total, mut count) = (parts().map(|(_, share)| share).sum::<f64>(), 0);
-        let (mut eps_r, mut sigma, mut relaxes) = (0.0, 0.0, false);
-        for &(id, share) in parts() {
-            eps_r += share * of(id).eps_r;
-            sigma += share * of(id).sigma;
-            relaxes |= of(id).is_dispersive();
-            count += 1;
-        }
+        let (count, relaxes) = (parts().count(), parts().any(|(id, _)| of(*id).is_dispersive()));
         if count < 2 || relaxes {
             let most = parts().max_by(|a, b| a.1.total_cmp(&b.1))?;
             return Some(Value::Pure(most.0));
         }
-        Some(Value::Mean(EdgeMaterial { eps_r: eps_r / total, sigma: sigma / total, dispersive: None, quarters: None }))
+        let total = parts().map(|(_, share)| share).sum::<f64>();
+        let mean = |value: fn(f64, f64) -> f64| {
+            parts().map(|(id, share)| share / total * value(of(*id).eps_r, of(*id).sigma)).sum::<f64>()
+        };
+        let (mut eps_r, mut sigma) = (mean(|eps_r, _| eps_r), mean(|_, sigma| sigma));
+        if across > 0.0 {
+            // The same of `eps - i sigma/w`, to first order in sigma.
+            let inverse = across * mean(|eps_r, _| 1.0 / eps_r) + (1.0 - across) / eps_r;
+            let loss = across * mean(|eps_r, sigma| sigma / (eps_r * eps_r)) + (1.0 - across) * sigma / (eps_r * eps_r);
+            (eps_r, sigma) = (1.0 / inverse, loss / (inverse * inverse));
+        }
+        Some(Value::Mean(EdgeMaterial { eps_r, sigma, dispersive: None, quarters: None }))
     }
 }

@@ -13,7 +13,7 @@ const D: [f64; 3] = [0.002, 0.0025, 0.003];
 
 fn block(cells: [usize; 3]) -> (Model, MaterialId) {
     let mut model = Model::new("", Grid { cells, spacing: D }, TimeWindow::Iterations(1));
-    model.averaging = Averaging::Shapes;
+    model.averaging = Averaging::Volumes;
     let stone = model.add_material(Material::dielectric("stone", 6.0, 0.004));
     (model, stone)
 }
@@ -220,6 +220,35 @@ fn equal_boxes_share_an_entry() {
     model.objects.push(Object::Box { lower: [-1.0; 3], upper, material: stone, averaging: true });
     let painted = paint3(&model).unwrap();
     assert_eq!(painted.palette.len(), 5, "{:?}", painted.palette);
+}
+
+/// A layer's face: edges along it hold the arithmetic mean, edges across it the harmonic one, of loss to first order
+/// `eps² <sigma/eps²>`; a ball's pole the same. Between them `1/eps = n² <1/eps> + (1 - n²)/<eps>`.
+#[test]
+fn edges_across_a_surface_hold_the_harmonic_mean() {
+    let (mut model, stone) = block([12, 12, 12]);
+    model.averaging = Averaging::Shapes;
+    let upper = [1.0, 1.0, 5.3 * D[2]];
+    model.objects.push(Object::Box { lower: [-1.0; 3], upper, material: stone, averaging: true });
+    let painted = paint3(&model).unwrap();
+    let (along, across) = (painted.edge(0, [5, 5, 5]), painted.edge(2, [5, 5, 5]));
+    assert!((along.eps_r - (1.0 + 5.0 * 0.8)).abs() < 1e-6 && (along.sigma - 0.8 * 0.004).abs() < 1e-9);
+    let harmonic = 1.0 / (0.3 / 6.0 + 0.7);
+    assert!((across.eps_r - harmonic).abs() < 1e-6, "{across:?}");
+    assert!((across.sigma - harmonic * harmonic * 0.3 * 0.004 / 36.0).abs() < 1e-9, "{across:?}");
+    // A ball whose surface passes node (6, 6, k) at 45 degrees between x and z.
+    let middle = [6.0 * D[0], 6.0 * D[1], 6.0 * D[2]];
+    let centre = [middle[0] - 0.007, middle[1], middle[2] - 0.007];
+    model.objects = vec![sphere(centre, 0.007 * 2f64.sqrt(), stone)];
+    let edge = |model: &Model| paint3(model).unwrap().edge(1, [6, 5, 6]).eps_r;
+    let shapes = edge(&model);
+    model.averaging = Averaging::Volumes;
+    let mean = edge(&model);
+    let share = (mean - 1.0) / 5.0;
+    // The box's middle lies half a cell along y beside the plane of the normal.
+    let across = (0.5 * D[1]).powi(2) / ((0.5 * D[1]).powi(2) + 2.0 * 0.007f64.powi(2));
+    let exact = 1.0 / (across * (share / 6.0 + 1.0 - share) + (1.0 - across) / mean);
+    assert!((shapes - exact).abs() < 1e-9, "{shapes} {exact}");
 }
 
 /// Conductors keep their cells and take no part; a dispersive medium takes an edge or leaves it; what has no volume is
