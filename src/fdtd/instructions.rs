@@ -1,4 +1,4 @@
-//! Which vector instructions the sweep uses: the one place with `unsafe`.
+//! Which vector instructions the sweep uses: with its registers (`lanes`) the one place with `unsafe`.
 //!
 //! A sweep is compiled once per instruction set and chosen at run time. All variants come from the same source without
 //! fused multiplication and addition, so they give the same bits.
@@ -77,7 +77,7 @@ impl Sweep {
             // SAFETY: as above.
             #[cfg(target_arch = "x86_64")]
             InstructionSet::Avx2 => unsafe { sweep_avx2(block, cones, first, count) },
-            _ => block.pass(cones, first, count),
+            _ => block.pass::<T::Basic>(cones, first, count),
         }
     }
 }
@@ -85,11 +85,11 @@ impl Sweep {
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
 fn sweep_avx2<T: Real>(block: &mut Block<T>, cones: &Cones, first: usize, count: usize) {
-    block.pass(cones, first, count);
+    block.pass::<T::Avx2>(cones, first, count);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512vl")]
 fn sweep_avx512<T: Real>(block: &mut Block<T>, cones: &Cones, first: usize, count: usize) {
-    block.pass(cones, first, count);
+    block.pass::<T::Avx512>(cones, first, count);
 }

@@ -4,8 +4,12 @@
 //! node `j`, so that every kernel runs over `j = 1..` with aligned rows. Rows run along y and are contiguous; node 0 of
 //! each row and the nodes past the far wall are padding that stays zero because their coefficients are.
 //!
+//! For the kernels a row is made of chunks of sixteen nodes: chunk `c` holds the nodes `16 (c - 1) + 1 ..= 16 c`, and chunk 0,
+//! which is also what lies behind the last chunk of the row before, only padding and node 0.
+//!
 //! H is held scaled, so that its step has no coefficient: `Hx = hx dt/(mu0 dy)`, `Hy = hy dt/(mu0 dx)`, in V/m.
 
+use super::lanes::Chunk;
 use super::real::Real;
 
 /// Rows are padded to whole multiples of this many numbers (64 bytes in single precision).
@@ -59,6 +63,41 @@ impl<T: Real> Rows<T> {
     #[inline(always)]
     pub fn below_wall(&mut self, row: usize) -> &mut T {
         &mut self.data[self.origin + row * self.stride - 1]
+    }
+
+    /// Where chunk 0 of row 0 begins.
+    #[inline(always)]
+    fn border(&self) -> usize {
+        self.origin + 1 - LANES
+    }
+
+    /// `count` chunks of a row from chunk `first` on.
+    #[inline(always)]
+    pub fn chunks(&self, row: usize, first: usize, count: usize) -> &[Chunk<T>] {
+        &self.data[self.border()..].as_chunks().0[row * (self.stride / LANES) + first..][..count]
+    }
+
+    /// As [`Rows::chunks`], to change them.
+    #[inline(always)]
+    pub fn chunks_mut(&mut self, row: usize, first: usize, count: usize) -> &mut [Chunk<T>] {
+        let (border, at) = (self.border(), row * (self.stride / LANES) + first);
+        &mut self.data[border..].as_chunks_mut().0[at..][..count]
+    }
+
+    /// `count` chunks of a row from the one before chunk `first` on, to change, and all but the first of them of the next row.
+    #[inline(always)]
+    pub fn with_next(&mut self, row: usize, first: usize, count: usize) -> (&mut [Chunk<T>], &[Chunk<T>]) {
+        let (border, stride) = (self.border(), self.stride / LANES);
+        let (these, next) = self.data[border..].as_chunks_mut().0.split_at_mut((row + 1) * stride);
+        (&mut these[row * stride + first - 1..][..count], &next[first..][..count - 1])
+    }
+
+    /// `count` chunks of the row before, and the same of a row, to change.
+    #[inline(always)]
+    pub fn with_last(&mut self, row: usize, first: usize, count: usize) -> (&[Chunk<T>], &mut [Chunk<T>]) {
+        let (border, stride) = (self.border(), self.stride / LANES);
+        let (last, these) = self.data[border..].as_chunks_mut().0.split_at_mut(row * stride);
+        (&last[(row - 1) * stride + first..][..count], &mut these[first..][..count])
     }
 
     /// `count` nodes of a row from node `j` on.

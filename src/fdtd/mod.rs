@@ -21,6 +21,7 @@ mod error;
 mod instructions;
 mod keeping;
 mod kernel;
+mod lanes;
 mod layout;
 mod predict;
 mod reach;

@@ -4,6 +4,7 @@ use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 
 use super::FdtdError;
+use super::block::absorbing_nodes;
 use super::coefficients::Edge;
 use super::conductor::Cuts;
 use super::layout::{Rows, padded_width};
@@ -135,7 +136,7 @@ fn bytes<T: super::real::Real>(setup: &Setup<'_>) -> u64 {
     let width = padded_width(ny);
     let arrays = if setup.lossy() { 5 } else { 4 };
     let [x0, y0, x1, y1] = &setup.slabs;
-    let columns: u64 = [y0, y1].iter().map(|slab| 2 * Rows::<T>::bytes(nx, slab.cells)).sum();
+    let columns = 2 * Rows::<T>::bytes(nx, absorbing_nodes(y0, y1, ny));
     let poles: usize = poles_per_node(setup).iter().enumerate().map(|(poles, nodes)| poles * nodes).sum();
     let cuts = if setup.order == Order::Fourth { Cuts::new(setup, 0, nx).bytes() } else { 0 };
     let samples = setup.receivers.len() * 6 * 8 + setup.drives.len() * (8 + size_of::<T>());

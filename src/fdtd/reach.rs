@@ -68,6 +68,10 @@ struct Cone {
     /// Backwards, `k` steps before the end matters `south_back - pace k ..= north_back + pace k`.
     south_back: i64,
     north_back: i64,
+    /// First step that touches every node.
+    all_from: i64,
+    /// Last step that does.
+    all_until: i64,
 }
 
 /// Beyond any grid, and far enough from the limits of the type to be added to.
@@ -78,8 +82,26 @@ impl Cones {
     pub fn new(setup: &Setup<'_>, skip: bool) -> Self {
         let [nx, ny] = setup.painted.cells_xy;
         let (steps, pace) = (setup.iterations as i64 - 1, setup.order.cells_per_step() as i64);
-        let everything = Cone { from: 0, until: FAR, south: -FAR, north: FAR, south_back: -FAR, north_back: FAR };
-        let nothing = Cone { from: FAR, until: -FAR, south: FAR, north: -FAR, south_back: FAR, north_back: -FAR };
+        let everything = Cone {
+            from: 0,
+            until: FAR,
+            south: -FAR,
+            north: FAR,
+            south_back: -FAR,
+            north_back: FAR,
+            all_from: 0,
+            all_until: FAR,
+        };
+        let nothing = Cone {
+            from: FAR,
+            until: -FAR,
+            south: FAR,
+            north: -FAR,
+            south_back: FAR,
+            north_back: -FAR,
+            all_from: FAR,
+            all_until: -FAR,
+        };
         let mut rows = vec![if skip { nothing } else { everything }; nx + 1];
         if skip {
             for drive in &setup.drives {
@@ -101,7 +123,25 @@ impl Cones {
                 }
             }
         }
-        Self { rows, ny: ny as i64, pace, steps }
+        let mut cones = Self { rows, ny: ny as i64, pace, steps };
+        if skip {
+            for row in 0..=nx {
+                (cones.rows[row].all_from, cones.rows[row].all_until) = cones.all(&cones.rows[row]);
+            }
+        }
+        cones
+    }
+
+    /// The first and the last step that touch every chunk of a row.
+    fn all(&self, cone: &Cone) -> (i64, i64) {
+        let (low, high) = (LANES as i64, padded_width(self.ny as usize) as i64 - LANES as i64 + 1);
+        // Steps until the reach has moved on by as much as it lacks at either end.
+        let lack = |south: i64, north: i64| {
+            let lack = (south - low).max(high - north).max(0);
+            lack / self.pace + i64::from(lack % self.pace != 0)
+        };
+        let (forwards, backwards) = (lack(cone.south, cone.north), lack(cone.south_back, cone.north_back));
+        (forwards.max(cone.from), (self.steps - backwards).min(cone.until))
     }
 
     /// First node and number of nodes of a row that a step must touch, whole vectors; `None` for none.
@@ -110,6 +150,9 @@ impl Cones {
         let (cone, k) = (&self.rows[row], step as i64);
         if k < cone.from || k > cone.until {
             return None;
+        }
+        if k >= cone.all_from && k <= cone.all_until {
+            return Some((1, padded_width(self.ny as usize)));
         }
         let (gone, left) = (self.pace * k, self.pace * (self.steps - k));
         let low = (cone.south - gone).max(cone.south_back - left).max(1);

@@ -1,11 +1,13 @@
-//! The absorbing boundary: first-order HORIPML as corrections added to a row after its plain step.
+//! The absorbing boundary: first-order HORIPML as corrections added to a chunk after its plain step.
 //!
 //! With `d` the difference of the plain step, the field gains `coefficient [(RA - 1) d + RB phi]`, then
 //! `phi <- RE phi - RF d` (Giannopoulos 2012, "Unsplit implementation of higher order PMLs", IEEE Trans. Antennas Propag.,
 //! doi:10.1109/TAP.2011.2180344, first order).
 
+use std::ops::Range;
+
+use super::super::lanes::{Chunk, Lanes};
 use super::super::real::Real;
-use super::difference::Difference;
 
 /// The four coefficients of a row that lies within the absorbing cells at an end of x.
 #[derive(Debug, Clone, Copy)]
@@ -20,72 +22,83 @@ pub struct RowProfile<T> {
     pub rf: T,
 }
 
-/// The four coefficients at the nodes of a row that lie within the absorbing cells at an end of y.
+/// A row within the absorbing cells at an end of x.
+pub struct Across<'a, T> {
+    /// The memory of each chunk of the span.
+    pub phi: &'a mut [Chunk<T>],
+    /// Its coefficients.
+    pub profile: RowProfile<T>,
+}
+
+impl<T: Real> Across<'_, T> {
+    /// What the field of a chunk gains by the difference across it.
+    #[inline(always)]
+    pub fn gain<C: Lanes<T>>(&mut self, i: usize, d: C) -> C {
+        let RowProfile { ra_less_one, rb, re, rf } = self.profile;
+        gain(d, &mut self.phi[i], [C::all(ra_less_one), C::all(rb), C::all(re), C::all(rf)])
+    }
+}
+
+/// The chunks of a span that hold absorbing cells of the ends of y.
+pub struct Along<'a, T> {
+    /// The memory of the row, one chunk per absorbing chunk of the grid.
+    pub phi: &'a mut [Chunk<T>],
+    /// `RA - 1`, `RB`, `RE`, `RF` at the nodes of the absorbing chunks.
+    pub profile: &'a [Vec<Chunk<T>>; 4],
+    /// Which of them are in the span.
+    pub ends: Ends,
+}
+
+/// Which chunks of a span hold absorbing cells: those below `low`, and those from `high` on.
 #[derive(Debug, Clone, Copy)]
-pub struct ColumnProfile<'a, T> {
-    /// `RA - 1`
-    pub ra_less_one: &'a [T],
-    /// `RB`
-    pub rb: &'a [T],
-    /// `RE`
-    pub re: &'a [T],
-    /// `RF`
-    pub rf: &'a [T],
+pub struct Ends {
+    /// Chunks below.
+    pub low: usize,
+    /// First chunk above.
+    pub high: usize,
+    /// Place of chunk 0 among the absorbing chunks, if it is one.
+    pub place_low: usize,
+    /// Place of chunk `high`, if there is one.
+    pub place_high: usize,
 }
 
-/// Corrects Hy of a row by the difference of Ez along x.
-#[inline(always)]
-pub fn absorb_row_h<T: Real, D: Difference<T>>(hy: &mut [T], along_x: D, phi: &mut [T], p: RowProfile<T>) {
-    let n = hy.len();
-    let (along_x, phi) = (along_x.part(0, n), &mut phi[..n]);
-    for j in 0..n {
-        let d = along_x.at(j);
-        hy[j] = hy[j] + (p.ra_less_one * d + p.rb * phi[j]);
-        phi[j] = p.re * phi[j] - p.rf * d;
+impl Ends {
+    /// The chunks of a span of `count` that do not absorb.
+    pub fn plain(self, count: usize) -> Range<usize> {
+        let (low, high) = (self.low.min(count), self.high.min(count));
+        if low < high { low..high } else { count..count }
+    }
+
+    /// Place of a chunk among the absorbing ones.
+    #[inline(always)]
+    pub fn place(self, i: usize) -> Option<usize> {
+        if i < self.low {
+            Some(self.place_low + i)
+        } else {
+            i.checked_sub(self.high).map(|above| self.place_high + above)
+        }
     }
 }
 
-/// Corrects Ez of a row by the difference of Hy along x.
-#[inline(always)]
-pub fn absorb_row_e<T: Real, D: Difference<T>>(ez: &mut [T], cb: &[T], along_x: D, phi: &mut [T], p: RowProfile<T>) {
-    let n = ez.len();
-    let (cb, along_x, phi) = (&cb[..n], along_x.part(0, n), &mut phi[..n]);
-    for j in 0..n {
-        let d = along_x.at(j);
-        ez[j] = ez[j] + cb[j] * (p.ra_less_one * d + p.rb * phi[j]);
-        phi[j] = p.re * phi[j] - p.rf * d;
+impl<T: Real> Along<'_, T> {
+    /// What the field of a chunk gains by the difference along y; `None` for a chunk that does not absorb.
+    #[inline(always)]
+    pub fn gain<C: Lanes<T>>(&mut self, i: usize, d: C) -> Option<C> {
+        let place = self.ends.place(i)?;
+        let [ra_less_one, rb, re, rf] = self.profile;
+        let profile = [&ra_less_one[place], &rb[place], &re[place], &rf[place]];
+        Some(gain(
+            d,
+            &mut self.phi[place],
+            [C::load(profile[0]), C::load(profile[1]), C::load(profile[2]), C::load(profile[3])],
+        ))
     }
 }
 
-/// Corrects Hx at one end of a row by the difference of Ez along y.
+/// `(RA - 1) d + RB phi`, and the new `phi`.
 #[inline(always)]
-pub fn absorb_columns_h<T: Real, D: Difference<T>>(hx: &mut [T], along_y: D, phi: &mut [T], p: ColumnProfile<'_, T>) {
-    let n = hx.len();
-    let (along_y, phi) = (along_y.part(0, n), &mut phi[..n]);
-    let (ra_less_one, rb, re, rf) = (&p.ra_less_one[..n], &p.rb[..n], &p.re[..n], &p.rf[..n]);
-    for j in 0..n {
-        let d = along_y.at(j);
-        hx[j] = hx[j] - (ra_less_one[j] * d + rb[j] * phi[j]);
-        phi[j] = re[j] * phi[j] - rf[j] * d;
-    }
-}
-
-/// Corrects Ez at one end of a row by the difference of Hx along y; `ratio = dx²/dy²` as in the plain step.
-#[inline(always)]
-pub fn absorb_columns_e<T: Real, D: Difference<T>>(
-    ez: &mut [T],
-    cb: &[T],
-    ratio: T,
-    along_y: D,
-    phi: &mut [T],
-    p: ColumnProfile<'_, T>,
-) {
-    let n = ez.len();
-    let (cb, along_y, phi) = (&cb[..n], along_y.part(0, n), &mut phi[..n]);
-    let (ra_less_one, rb, re, rf) = (&p.ra_less_one[..n], &p.rb[..n], &p.re[..n], &p.rf[..n]);
-    for j in 0..n {
-        let d = along_y.at(j);
-        ez[j] = ez[j] - cb[j] * (ratio * (ra_less_one[j] * d + rb[j] * phi[j]));
-        phi[j] = re[j] * phi[j] - rf[j] * d;
-    }
+fn gain<T: Real, C: Lanes<T>>(d: C, phi: &mut Chunk<T>, [ra_less_one, rb, re, rf]: [C; 4]) -> C {
+    let old = C::load(phi);
+    (re * old - rf * d).store(phi);
+    ra_less_one * d + rb * old
 }

@@ -1,45 +1,93 @@
-//! The Yee scheme, TMz, on one row; see [`layout`](super::super::layout) for where the arrays live and how H is scaled.
+//! The Yee scheme, TMz, on one chunk; see [`layout`](super::super::layout) for where the arrays live and how H is scaled.
 //!
 //! `along_x` and `along_y` are the differences that make the curl, of either order.
 
+use std::ops::Range;
+
+use super::super::lanes::{Chunk, Lanes};
 use super::super::real::Real;
-use super::difference::Difference;
+use super::absorb::{Across, Along};
 
-/// One H step: `Hx -= dy Ez`, `Hy += dx Ez`, both scaled.
-///
-/// Shape: all begin at node `j = 1` of row `i`; equal lengths.
-#[inline(always)]
-pub fn update_h<T: Real, D: Difference<T>>(hx: &mut [T], hy: &mut [T], along_x: D, along_y: D) {
-    let n = hx.len();
-    let (hy, along_x, along_y) = (&mut hy[..n], along_x.part(0, n), along_y.part(0, n));
-    for j in 0..n {
-        hx[j] = hx[j] - along_y.at(j);
-        hy[j] = hy[j] + along_x.at(j);
+/// H of a span of a row, and what absorbs it.
+pub struct RowOfH<'a, T> {
+    /// One chunk per chunk of the span.
+    pub hx: &'a mut [Chunk<T>],
+    /// One chunk per chunk of the span.
+    pub hy: &'a mut [Chunk<T>],
+    /// In the absorbing cells at an end of x.
+    pub across: Option<Across<'a, T>>,
+    /// The absorbing cells at the ends of y.
+    pub along: Along<'a, T>,
+}
+
+impl<T: Real> RowOfH<'_, T> {
+    /// The chunks of a span of `count` whose H does not absorb.
+    pub fn plain(&self, count: usize) -> Range<usize> {
+        if self.across.is_some() { count..count } else { self.along.ends.plain(count) }
+    }
+
+    /// One H step of chunk `i`: `Hx -= dy Ez`, `Hy += dx Ez`, both scaled. `ABSORBING`: the chunk may absorb.
+    #[inline(always)]
+    pub fn step<C: Lanes<T>, const ABSORBING: bool>(&mut self, i: usize, along_x: C, along_y: C) -> [C; 2] {
+        let mut hx = C::load(&self.hx[i]) - along_y;
+        let mut hy = C::load(&self.hy[i]) + along_x;
+        if ABSORBING {
+            if let Some(across) = &mut self.across {
+                hy = hy + across.gain(i, along_x);
+            }
+            if let Some(gain) = self.along.gain(i, along_y) {
+                hx = hx - gain;
+            }
+        }
+        hx.store(&mut self.hx[i]);
+        hy.store(&mut self.hy[i]);
+        [hx, hy]
     }
 }
 
-/// One E step without conductivity: `Ez += cb [dx Hy - ratio dy Hx]`.
-///
-/// `cb = dt²/(mu0 dx² EA)`, `EA = eps/dt`; `ratio = dx²/dy²`; `cb = 0` holds the walls and perfect conductors.
-#[inline(always)]
-pub fn update_e<T: Real, D: Difference<T>>(ez: &mut [T], cb: &[T], ratio: T, along_x: D, along_y: D) {
-    let n = ez.len();
-    let (cb, along_x, along_y) = (&cb[..n], along_x.part(0, n), along_y.part(0, n));
-    for j in 0..n {
-        let curl = along_x.at(j) - ratio * along_y.at(j);
-        ez[j] = ez[j] + cb[j] * curl;
-    }
+/// What steps E of a span of a row, one chunk per chunk of the span.
+pub struct RowOfE<'a, T> {
+    /// `dt²/(mu0 dx² EA)`, `EA = eps/dt + sigma/2`; zero holds the walls and perfect conductors.
+    pub cb: &'a [Chunk<T>],
+    /// `(eps/dt - sigma/2)/(eps/dt + sigma/2)`; `None` where nothing conducts.
+    pub ca: Option<&'a [Chunk<T>]>,
+    /// `dx²/dy²`
+    pub ratio: T,
+    /// In the absorbing cells at an end of x.
+    pub across: Option<Across<'a, T>>,
+    /// The absorbing cells at the ends of y.
+    pub along: Along<'a, T>,
 }
 
-/// One E step with conductivity: as [`update_e`], with `ca Ez` in place of `Ez`.
-///
-/// `ca = (eps/dt - sigma/2)/(eps/dt + sigma/2)`.
-#[inline(always)]
-pub fn update_e_lossy<T: Real, D: Difference<T>>(ez: &mut [T], ca: &[T], cb: &[T], ratio: T, along_x: D, along_y: D) {
-    let n = ez.len();
-    let (ca, cb, along_x, along_y) = (&ca[..n], &cb[..n], along_x.part(0, n), along_y.part(0, n));
-    for j in 0..n {
-        let curl = along_x.at(j) - ratio * along_y.at(j);
-        ez[j] = ca[j] * ez[j] + cb[j] * curl;
+impl<T: Real> RowOfE<'_, T> {
+    /// The chunks of a span of `count` whose E does not absorb.
+    pub fn plain(&self, count: usize) -> Range<usize> {
+        if self.across.is_some() { count..count } else { self.along.ends.plain(count) }
+    }
+
+    /// One E step of chunk `i`: `ca Ez + cb [dx Hy - ratio dy Hx]`. `ABSORBING`: the chunk may absorb; `LOSSY`: there is a `ca`.
+    #[inline(always)]
+    pub fn step<C: Lanes<T>, const ABSORBING: bool, const LOSSY: bool>(
+        &mut self,
+        i: usize,
+        ez: C,
+        along_x: C,
+        along_y: C,
+    ) -> C {
+        let (cb, ratio) = (C::load(&self.cb[i]), C::all(self.ratio));
+        let mut ez = match self.ca {
+            Some(ca) if LOSSY => C::load(&ca[i]) * ez,
+            _ => ez,
+        };
+        ez = ez + cb * (along_x - ratio * along_y);
+        if ABSORBING {
+            if let Some(across) = &mut self.across {
+                ez = ez + cb * across.gain(i, along_x);
+            }
+            if let Some(gain) = self.along.gain(i, along_y) {
+                ez = ez - cb * (ratio * gain);
+            }
+        }
+        ez
     }
 }
