@@ -84,7 +84,7 @@ pub fn run(args: &RunArgs, count: NonZeroUsize) -> Result<(), CliError> {
         eprintln!("warning: without `#src_steps` and `#rx_steps` all traces are the same");
     }
     let results: Vec<PathBuf> = (1..=count.get()).map(|number| numbered(&result, number)).collect();
-    geometry_files::check(&model, &input, &results, args.force)?;
+    geometry_files::check(&model, &input, &results, true, args.force)?;
     let mut albums = vec![];
     for result in &results {
         let kept = kept_or_refused(args, result, &fingerprint)?;
@@ -107,7 +107,8 @@ pub fn run(args: &RunArgs, count: NonZeroUsize) -> Result<(), CliError> {
             geometry.solve(&solver, &moved, keeping, &bar, trace, count.get())
         })?;
         gprmax::write_traces(&result, &traces, &moved)?;
-        let files = album.publish()?;
+        let mut files = album.publish()?;
+        files.extend(geometry_files::write_views(&model, &result, trace, true)?);
         used.remove();
         let record: RunRecord = record(args, &fingerprint, started, Some(stats.wall.si()));
         record.write_beside(&result)?;

@@ -120,7 +120,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), CliError> {
             1e-9 * resolution.frequency.si()
         );
     }
-    print_snapshots(&model)?;
+    print_files(&model)?;
     println!("memory: {}", human_bytes(prediction.bytes));
     println!(
         "predicted time of the built-in solver: {:.2} s for {:.2e} cell-steps, {:.0} % of them left out (no wave there that a \
@@ -262,8 +262,8 @@ fn print_model(model: &Model) {
     );
 }
 
-/// What is written beside the traces while they are computed.
-fn print_snapshots(model: &Model) -> Result<(), CliError> {
+/// What is written beside the traces.
+fn print_files(model: &Model) -> Result<(), CliError> {
     for asked in &model.snapshots {
         let (step, [nx, ny, nz]) = (asked.step(model)?, asked.cells(model)?.count);
         println!(
@@ -271,6 +271,14 @@ fn print_snapshots(model: &Model) -> Result<(), CliError> {
             1e9 * step as f64 * model.time_step(),
             gprmax::snapshot_file(asked)
         );
+    }
+    for (command, file) in model
+        .geometry_files
+        .iter()
+        .map(|asked| ("#geometry_objects_write", &asked.file))
+        .chain(model.geometry_views.iter().map(|asked| ("#geometry_view", &asked.file)))
+    {
+        println!("`{command}`: {file}, written with the traces");
     }
     Ok(())
 }

@@ -278,7 +278,7 @@ fn run_fdtd(args: &RunArgs, input: &Path, result: &Path) -> Result<(Option<f64>,
     for note in &read.notes {
         eprintln!("note: {note}");
     }
-    geometry_files::check(&read.model, input, &[result.to_path_buf()], args.force)?;
+    geometry_files::check(&read.model, input, &[result.to_path_buf()], false, args.force)?;
     let album = Album::open(&read.model, result, args.force)?;
     let bar = Bar::new("simulating");
     let mut model = read.model;
@@ -290,6 +290,7 @@ fn run_fdtd(args: &RunArgs, input: &Path, result: &Path) -> Result<(Option<f64>,
     drop(bar);
     gprmax::write_traces(result, &traces, &model)?;
     let mut files = geometry_files::write(&model, input)?;
+    files.extend(geometry_files::write_views(&model, result, 0, false)?);
     files.extend(album.publish()?);
     used.remove();
     Ok((Some(stats.wall.si()), files))

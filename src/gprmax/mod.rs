@@ -14,7 +14,7 @@ mod program;
 mod reader;
 mod writer;
 
-pub use geometry::{GeometryError, GeometryWriteError, geometry_files, geometry_paths};
+pub use geometry::{GeometryError, GeometryWriteError, geometry_files, geometry_paths, view_files, view_paths};
 pub use install::{InstallError, Interpreter, VersionInfo};
 pub use output::{
     OutputError, OutputWriteError, read_snapshot, read_traces, snapshot_file, snapshot_folder, snapshot_path,

@@ -1,8 +1,8 @@
 //! The model itself.
 
 use super::{
-    AbsorbingProfile, Averaging, Axis, GeometryFile, Grid, MagneticAveraging, Material, MaterialId, Object, Order,
-    Receiver, Snapshot, Source, Waveform,
+    AbsorbingProfile, Averaging, Axis, GeometryFile, GeometryView, Grid, MagneticAveraging, Material, MaterialId,
+    Object, Order, Receiver, Snapshot, Source, Waveform,
 };
 
 /// How long to simulate.
@@ -58,6 +58,8 @@ pub struct Model {
     pub receiver_steps: [f64; 3],
     /// Geometry files to write (`#geometry_objects_write`); no trace depends on them.
     pub geometry_files: Vec<GeometryFile>,
+    /// Views of the geometry to write (`#geometry_view`); no trace depends on them.
+    pub geometry_views: Vec<GeometryView>,
     /// Snapshots to take (`#snapshot`); no trace depends on them.
     pub snapshots: Vec<Snapshot>,
 }
@@ -86,6 +88,7 @@ impl Model {
             source_steps: [0.0; 3],
             receiver_steps: [0.0; 3],
             geometry_files: vec![],
+            geometry_views: vec![],
             snapshots: vec![],
         }
     }

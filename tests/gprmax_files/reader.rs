@@ -62,7 +62,7 @@ fn every_supported_command_lands_in_the_model() {
         #add_dispersion_debye: 2 6 9.23e-12 1.5 1e-10 wet\n\
         #hertzian_dipole: z 0.1 0.15 0 pulse 1e-10 2e-9\n#waveform: gaussiandotnorm 2 1.5e9 pulse\n\
         #rx: 0.2 0.15 0\n#rx: 0.3 0.15 0 right Ez\n\
-        #geometry_view: 0 0 0 1 1 1 1 1 1 view n\n #box: 0 0 0 1 1 1 stone\n#rx_steps: 0.02 0 0\n";
+        #output_dir: elsewhere\n #box: 0 0 0 1 1 1 stone\n#rx_steps: 0.02 0 0\n";
     let Input { model, notes } = read(text).unwrap();
     assert_eq!(model.title, "sleepers: two");
     assert_eq!((model.grid.cells, model.grid.spacing), ([200, 100, 1], [0.002, 0.003, 0.004]));
@@ -94,7 +94,7 @@ fn every_supported_command_lands_in_the_model() {
         notes,
         [
             "line 19: `#rx` asks for Ez only: every component of the solver is given",
-            "line 20: `#geometry_view` is not acted upon: no geometry file is written",
+            "line 20: `#output_dir` is not acted upon: the output goes where the command line says",
             "line 21: ignored, as gprMax does: a command must start in the first column",
             "line 22: `#rx_steps` moves the receivers from the second trace of a B-scan on (`run --traces`)",
         ]

@@ -77,6 +77,7 @@ impl Turn {
             source_steps: self.triple(model.source_steps),
             receiver_steps: self.triple(model.receiver_steps),
             geometry_files: vec![],
+            geometry_views: vec![],
             snapshots: model.snapshots.iter().map(snapshot).collect(),
         }
     }

@@ -70,8 +70,20 @@ pub enum Data {
     F64(Vec<f64>),
     /// 16-bit integers with sign.
     I16(Vec<i16>),
+    /// 8-bit integers with sign.
+    I8(Vec<i8>),
+    /// 8-bit integers.
+    U8(Vec<u8>),
+    /// 32-bit integers with sign.
+    I32(Vec<i32>),
+    /// 32-bit integers.
+    U32(Vec<u32>),
+    /// 64-bit integers with sign.
+    I64(Vec<i64>),
     /// ASCII texts of one fixed length.
     Texts(Vec<String>),
+    /// Texts of any length; h5py sees objects.
+    LongTexts(Vec<String>),
 }
 
 /// A dataset to write.
@@ -152,7 +164,12 @@ fn fill(builder: &mut DatasetBuilder, dataset: &Dataset) -> Result<(), Hdf5Error
         Data::F32(values) => (values.len(), 4),
         Data::F64(values) => (values.len(), 8),
         Data::I16(values) => (values.len(), 2),
-        Data::Texts(values) => (values.len(), 1),
+        Data::I8(values) => (values.len(), 1),
+        Data::U8(values) => (values.len(), 1),
+        Data::I32(values) => (values.len(), 4),
+        Data::U32(values) => (values.len(), 4),
+        Data::I64(values) => (values.len(), 8),
+        Data::Texts(values) | Data::LongTexts(values) => (values.len(), 1),
     };
     if length != count {
         let reason = format!("`{}` has {length} values for the shape {:?}", dataset.name, dataset.shape);
@@ -162,6 +179,12 @@ fn fill(builder: &mut DatasetBuilder, dataset: &Dataset) -> Result<(), Hdf5Error
         Data::F32(values) => builder.with_f32_data(values),
         Data::F64(values) => builder.with_f64_data(values),
         Data::I16(values) => builder.with_i16_data(values),
+        Data::I8(values) => builder.with_i8_data(values),
+        Data::U8(values) => builder.with_u8_data(values),
+        Data::I32(values) => builder.with_i32_data(values),
+        Data::U32(values) => builder.with_u32_data(values),
+        Data::I64(values) => builder.with_i64_data(values),
+        Data::LongTexts(values) => builder.with_vlen_strings(&values.iter().map(String::as_str).collect::<Vec<_>>()),
         Data::Texts(values) => {
             let values: Vec<&str> = values.iter().map(String::as_str).collect();
             builder.with_ascii_strings(&values).map_err(|error| Hdf5Error::Encode { reason: error.to_string() })?

@@ -9,7 +9,7 @@ use crate::model::{Axis, Model, Source, TimeWindow, VoltageSource};
 use crate::trace::{AScan, Component, ReceiverTraces, Traces};
 
 /// The version of gprMax whose layout is written.
-pub(super) const LAYOUT: &str = "4.0.1";
+pub(in super::super) const LAYOUT: &str = "4.0.1";
 
 /// Writes traces as gprMax 4 would, so that its tools, h5py and MATLAB read them.
 ///
@@ -233,7 +233,7 @@ fn on_grid(model: &Model, position: [f64; 3]) -> (Vec<i32>, Attribute) {
     (node.map(|index| index as i32).into(), Attribute::Floats(snapped))
 }
 
-fn generated(kind: &str, node: &[i32]) -> String {
+pub(in super::super) fn generated(kind: &str, node: &[i32]) -> String {
     format!("{kind}({})", node.iter().map(i32::to_string).collect::<Vec<_>>().join(","))
 }
 

@@ -93,7 +93,7 @@ fn read_whole(path: &Path, text: &str) -> Result<Input, InFileError> {
             "geometry_objects_read",
             "geometry_objects_write",
         ],
-        &["snapshot"],
+        &["snapshot", "geometry_view"],
     ];
     for pass in passes {
         for command in commands.iter().filter(|command| pass.contains(&command.name)) {

@@ -43,6 +43,7 @@ pub(super) fn apply(
         "edge" => shapes::edge(model, command),
         "cylinder" => cylinder(model, command),
         "snapshot" => outputs::snapshot(model, command),
+        "geometry_view" => outputs::geometry_view(model, command),
         "geometry_objects_write" => outputs::geometry_objects_write(model, command, notes),
         _ => geometry_objects_read(model, path, command),
     }

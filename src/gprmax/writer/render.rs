@@ -13,8 +13,8 @@ use super::pulse_files::{PulseFiles, sampled};
 use super::voxel_files::{VoxelFiles, command_safe};
 use crate::files::write_bytes;
 use crate::model::{
-    Averaging, Beyond, Formulation, GeometryFile, Grading, MagneticAveraging, Material, MaterialId, Model, Object,
-    Order, Resonance, Snapshot, SnapshotTime, Source, Stretch, TimeWindow, VoltageSource,
+    Averaging, Beyond, Formulation, GeometryFile, GeometryView, Grading, MagneticAveraging, Material, MaterialId,
+    Model, Object, Order, Resonance, Snapshot, SnapshotTime, Source, Stretch, TimeWindow, ViewKind, VoltageSource,
 };
 
 /// The template that is built in.
@@ -28,7 +28,7 @@ pub const DEFAULT_TEMPLATE: &str = include_str!("../../../templates/model.in");
 /// `dispersive_averaging`, the text `magnetic_averaging`, `waveforms` (`kind`, `amplitude`,
 /// `frequency`, `id`; `file`, `between`, `beyond` of pulses given as samples), `sources` (`command`, `polarisation`, `position`, `resistance`,
 /// `waveform`, `start`, `stop`), `receivers` (`position`, `name`),
-/// lists `source_steps`, `receiver_steps`, and `objects`, `geometry_files` and `snapshots`, the finished lines. What is not given is an empty text or list; a name that does not exist is an error.
+/// lists `source_steps`, `receiver_steps`, and `objects`, `geometry_files`, `geometry_views` and `snapshots`, the finished lines. What is not given is an empty text or list; a name that does not exist is an error.
 #[derive(Debug, Clone, Default)]
 pub struct InputOptions {
     /// Name and text of a template to use instead of [`DEFAULT_TEMPLATE`].
@@ -68,6 +68,8 @@ struct Page {
     objects: Vec<String>,
     /// `#geometry_objects_write` lines.
     geometry_files: Vec<String>,
+    /// `#geometry_view` lines.
+    geometry_views: Vec<String>,
     /// `#snapshot` lines.
     snapshots: Vec<String>,
 }
@@ -236,6 +238,7 @@ fn page(model: &Model, voxels: &VoxelFiles<'_>, pulses: &PulseFiles<'_>) -> Resu
         receiver_steps: steps(model.receiver_steps),
         objects,
         geometry_files: model.geometry_files.iter().map(geometry_line).collect(),
+        geometry_views: model.geometry_views.iter().map(view_line).collect(),
         snapshots: model.snapshots.iter().map(snapshot_line).collect(),
     })
 }
@@ -250,6 +253,12 @@ fn directives(model: &Model) -> Vec<String> {
 fn geometry_line(asked: &GeometryFile) -> String {
     let [lower, upper] = [asked.lower, asked.upper].map(|corner| corner.map(number).join(" "));
     format!("#geometry_objects_write: {lower} {upper} {}", asked.file)
+}
+
+fn view_line(asked: &GeometryView) -> String {
+    let numbers = [asked.lower, asked.upper, asked.spacing].map(|three| three.map(number).join(" ")).join(" ");
+    let kind = if asked.kind == ViewKind::Edges { "f" } else { "n" };
+    format!("#geometry_view: {numbers} {} {kind}", asked.file)
 }
 
 fn snapshot_line(asked: &Snapshot) -> String {
@@ -448,6 +457,7 @@ fn check(model: &Model) -> Result<(), WriteError> {
         }
     }
     model.geometry_files.iter().try_for_each(|asked| named("geometry file", &asked.file, &[]))?;
+    model.geometry_views.iter().try_for_each(|asked| named("geometry view", &asked.file, &[]))?;
     model.snapshots.iter().try_for_each(|asked| named("snapshot", &asked.name, &['/']))?;
     model.waveforms.iter().try_for_each(|waveform| named("waveform", &waveform.id, &[]))?;
     model

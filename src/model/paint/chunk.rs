@@ -53,15 +53,20 @@ impl Job<'_> {
         settler.finish()
     }
 
-    fn paint(&self, i: usize, solid: &mut [MaterialId], kept: &mut Kept, solids: &[u32], own: bool) {
-        kept.claims.clear();
-        let mut plane = Plane { layout: self.layout, i, solid, claims: &mut kept.claims };
+    /// Paints plane `i`, which holds free space and no claims, with some of the solids; `own`: those that fill a cell of it are marked.
+    pub fn paint_plane(&self, i: usize, solid: &mut [MaterialId], claims: &mut Claims, solids: &[u32], own: bool) {
+        let mut plane = Plane { layout: self.layout, i, solid, claims };
         for &index in solids {
             let object = &self.solids[index as usize];
             if object.cells[0].contains(&i) && object.fill(&mut plane) && own {
                 self.filled[index as usize].store(true, Ordering::Relaxed);
             }
         }
+    }
+
+    fn paint(&self, i: usize, solid: &mut [MaterialId], kept: &mut Kept, solids: &[u32], own: bool) {
+        kept.claims.clear();
+        self.paint_plane(i, solid, &mut kept.claims, solids, own);
         let even = |row: &[MaterialId]| Some(row[0]).filter(|first| row.iter().all(|id| id == first));
         kept.even.clear();
         kept.even.extend(solid.chunks_exact(self.layout.n[2]).map(even));

@@ -12,6 +12,7 @@
 mod chunk;
 mod claims;
 mod error;
+mod finished;
 mod layout;
 mod settle;
 mod solid;
@@ -20,5 +21,6 @@ mod tests;
 mod whole;
 
 pub use error::PaintError;
+pub use finished::{Finished, Parts, paint_finished};
 pub use layout::{check_grid, check_two_dimensional};
 pub use whole::{paint, paint3};

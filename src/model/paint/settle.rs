@@ -326,7 +326,7 @@ impl<'a> Settler<'a> {
 }
 
 /// The last claim in up to two lists, at place `k` of their rows.
-fn latest(lists: [Option<(&List, usize)>; 2], cells: usize, k: usize) -> Claim {
+pub fn latest(lists: [Option<(&List, usize)>; 2], cells: usize, k: usize) -> Claim {
     let claim = |list: Option<(&List, usize)>| list.and_then(|(list, j)| list.get(j * (cells + 1) + k).copied());
     lists.map(claim).into_iter().flatten().fold(Claim::NONE, Claim::latest)
 }
