@@ -26,7 +26,7 @@ pub use fouling::{Bed, Compaction, FinesPassing, FoulingIndices, RelativeFouling
 pub use fouling_amount::{BottomFilledBed, Described, Fouling, FoulingAmount, FoulingError};
 pub use mixing::{MixError, MixingModel, mix, mix_dielectrics};
 pub use named::{Confidence, NamedMaterial, UnknownMaterial, all_named, named};
-pub use soil::{Peplinski, SoilError, topp_permittivity, topp_water_content};
+pub use soil::{Mixture, Peplinski, SoilError, WATER_25_C, topp_permittivity, topp_water_content};
 
 /// A complex number of double precision, as permittivities are.
 pub type Complex = nalgebra::Complex<f64>;

@@ -2,7 +2,7 @@
 
 use super::dielectric::{WATER, WATER_EPS_INFINITY};
 use super::{DebyePole, Dielectric};
-use crate::units::{KilogramsPerCubicMetre, Share, SiemensPerMetre};
+use crate::units::{KilogramsPerCubicMetre, Seconds, Share, SiemensPerMetre};
 
 /// Relative permittivity of a soil from its volumetric water content (Topp, Davis and Annan 1980).
 ///
@@ -75,6 +75,22 @@ pub enum SoilError {
     },
 }
 
+/// What Peplinski's fit gives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mixture {
+    /// Relative permittivity far above the relaxation.
+    pub eps_infinity: f64,
+    /// Strength of the pole.
+    pub delta_eps: f64,
+    /// Conductivity, S/m.
+    pub sigma: f64,
+}
+
+/// Pure water at 25 °C above a permittivity of 4.9, as gprMax 4 has it: the polynomials of Ulaby, Moore & Fung 1986,
+/// "Microwave remote sensing" vol. III, appendix E (Klein & Swift 1977), at that temperature.
+pub const WATER_25_C: DebyePole =
+    DebyePole { delta_eps: 73.338_906_250_000_01, tau: Seconds(8.099_395_053_946_554e-12) };
+
 impl Peplinski {
     /// The soil at a volumetric water content: one Debye pole of water and a conductivity.
     ///
@@ -97,20 +113,29 @@ impl Peplinski {
         if !(th > 0.0 && th <= porosity + 1e-9) {
             return Err(SoilError::WaterContent { water: water_content, porosity: Share(porosity) });
         }
+        let Mixture { eps_infinity, delta_eps, sigma } = self.fit(th, WATER);
+        let eps_static = eps_infinity + delta_eps;
+        Dielectric::new(eps_infinity, SiemensPerMetre(sigma), vec![DebyePole { delta_eps, tau: WATER.tau }])
+            .map_err(|_| SoilError::OutsideTheFit { eps_infinity, eps_static, sigma })
+    }
+
+    /// The fit itself, whatever comes of it, with another water: one Debye pole with the relaxation time of the water, above the
+    /// permittivity `eps_infinity`, and a conductivity in S/m. gprMax 4 takes [`WATER_25_C`] for `#soil_peplinski`.
+    pub fn fit(&self, water_content: f64, water: DebyePole) -> Mixture {
         const A: f64 = 0.65;
+        let (s, c, th) = (self.sand.si(), self.clay.si(), water_content);
+        let (rho_b, rho_s) = (self.bulk_density.si() / 1000.0, self.grain_density.si() / 1000.0);
         let omega = 2.0 * std::f64::consts::PI * 1.3e9;
-        let water = WATER_EPS_INFINITY + WATER.delta_eps / (1.0 + (omega * WATER.tau.si()).powi(2));
+        let wet = WATER_EPS_INFINITY + water.delta_eps / (1.0 + (omega * water.tau.si()).powi(2));
         let grains = (1.01 + 0.44 * rho_s).powi(2) - 0.062;
         let b_real = 1.2748 - 0.519 * s - 0.152 * c;
         let b_imaginary = 1.33797 - 0.603 * s - 0.166 * c;
         let conduction = 0.0467 + 0.2204 * rho_b - 0.411 * s + 0.6614 * c;
-        let mixed = 1.0 + rho_b / rho_s * (grains.powf(A) - 1.0) + th.powf(b_real) * water.powf(A) - th;
+        let mixed = 1.0 + rho_b / rho_s * (grains.powf(A) - 1.0) + th.powf(b_real) * wet.powf(A) - th;
         let eps_static = 1.15 * mixed.powf(1.0 / A) - 0.68;
-        let delta_eps = th.powf(b_imaginary / A) * WATER.delta_eps;
-        let eps_infinity = eps_static - delta_eps;
-        let sigma = th.powf(b_imaginary / A) * conduction * (rho_s - rho_b) / (rho_s * th);
-        Dielectric::new(eps_infinity, SiemensPerMetre(sigma), vec![DebyePole { delta_eps, tau: WATER.tau }])
-            .map_err(|_| SoilError::OutsideTheFit { eps_infinity, eps_static, sigma })
+        let delta_eps = th.powf(b_imaginary / A) * water.delta_eps;
+        let sigma = th.powf(b_imaginary / A) * (conduction * (rho_s - rho_b)) / (rho_s * th);
+        Mixture { eps_infinity: eps_static - delta_eps, delta_eps, sigma }
     }
 }
 

@@ -8,6 +8,7 @@ mod absorbing;
 mod averaging;
 mod check;
 mod effects;
+mod fractal;
 mod geometry_file;
 mod grid;
 mod indices;
@@ -34,6 +35,7 @@ pub use check::{
     check_absorbing_cells, check_memory, check_mode, check_recording, check_stability_factor, mebibytes,
 };
 pub use effects::{Effect, Effects};
+pub use fractal::{FractalBox, FractalSurface};
 pub use geometry_file::GeometryFile;
 pub use grid::{Grid, ceil_half_down};
 pub use indices::Indices;

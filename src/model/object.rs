@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::Axis;
+use super::fractal::FractalBox;
 use super::material::MaterialId;
 
 /// Something that fills cells. Coordinates in metres, as the user wrote them: painting snaps them to the grid.
@@ -121,6 +122,8 @@ pub enum Object {
     },
     /// A block of cells with their materials: `#geometry_objects_read`.
     Voxels(Voxels),
+    /// A box of noise: `#fractal_box`.
+    Fractal(FractalBox),
 }
 
 impl Object {
@@ -137,6 +140,7 @@ impl Object {
             | Self::Plate { material, .. }
             | Self::Edge { material, .. } => *material == id,
             Self::Voxels(block) => block.cells.contains(&Some(id)),
+            Self::Fractal(fractal) => fractal.holds(id),
         }
     }
 }

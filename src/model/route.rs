@@ -53,12 +53,9 @@ impl Model {
         }
         let why = |(index, material): (usize, &Material)| {
             let free_space = index == MaterialId::FREE_SPACE.index();
-            if !(free_space || used(index)) {
-                return None;
-            }
             let id = &material.id;
             let (poles, ringing) = material.pole_counts();
-            if material.is_magnetic() {
+            let why = if material.is_magnetic() {
                 Some(format!("`{id}` is magnetic"))
             } else if ringing > 0 {
                 Some(format!("`{id}` has a Lorentz pole"))
@@ -68,7 +65,9 @@ impl Model {
                 Some(format!("`{id}` relaxes and is averaged"))
             } else {
                 None
-            }
+            };
+            // Whether it is used takes long to find out.
+            why.filter(|_| free_space || used(index))
         };
         if let Some(why) = self.materials.iter().enumerate().find_map(why) {
             return Some(why);

@@ -150,3 +150,66 @@ fn profiles_of_the_boundary_are_read() {
     assert!(error("#pml_formulation: CPML").contains("one of HORIPML, MRIPML"));
     assert!(error("#pml_slab: x0 5").contains("is not supported by the embedded solver"));
 }
+
+/// What stands in a file of boxes of noise that cannot be. gprMax 4.0.1 was seen to refuse all of these but a missing seed
+/// (its noise is then another in each run), several materials of one that is no mixture (it fails on an index), and soil
+/// whose conductivity is negative (it stops at its time step).
+#[test]
+fn boxes_of_noise_that_cannot_be_are_refused_by_line() {
+    let head = "#domain: 0.04 0.04 0.04\n#dx_dy_dz: 0.002 0.002 0.002\n#time_window: 60\n#pml_cells: 0\n\
+                #material: 4 0 1 0 sand\n#soil_peplinski: 0.5 0.5 2.0 2.66 0.001 0.25 soil\n#material_list: sand free_space two\n";
+    let fractal = "#fractal_box: 0 0 0 0.04 0.04 0.02 1.5 1 1 1 20 soil ground 7\n";
+    let rough = "#add_surface_roughness: 0 0 0.02 0.04 0.04 0.02 1.5 1 1 0.014 0.03 ground 5\n";
+    for (text, line, said) in [
+        ("#fractal_box: 0 0 0 0.04 0.04 0.02 1.5 1 1 1 20 soil ground", 8, "without a seed"),
+        ("#fractal_box: 0 0 0 0.04 0.04 0.02 1.5 1 1 1 20 soil ground -7", 8, "`-7` is not a number"),
+        ("#fractal_box: 0 0 0 0.04 0.04 0.02 1.5 1 1 1 20 soil ground y", 8, "`y` is not a number"),
+        ("#fractal_box: 0 0 0 0.04 0.04 0.02 -1 1 1 1 20 soil ground 7", 8, "the dimension"),
+        ("#fractal_box: 0 0 0 0.04 0.04 0.02 1.5 1 -1 1 20 soil ground 7", 8, "a weight"),
+        ("#fractal_box: 0 0 0 0.04 0.04 0.02 1.5 1 1 1 0 soil ground 7", 8, "the number of materials"),
+        ("#fractal_box: 0 0 0 0.04 0.04 0.02 1.5 1 1 1 1 soil ground 7", 8, "one material of a mixture"),
+        ("#fractal_box: 0 0 0 0.04 0.04 0.02 1.5 1 1 1 3 two ground 7", 8, "at most those of the list"),
+        ("#fractal_box: 0 0 0 0.04 0.04 0.02 1.5 1 1 1 3 sand ground 7", 8, "several materials out of one"),
+        ("#fractal_box: 0 0 0 0.04 0.04 0.02 1.5 1 1 1 1 sand ground 7", 8, "write `#box`"),
+        ("#fractal_box: 0 0 0 0.04 0.04 0.02 1.5 1 1 1 20 sail ground 7", 8, "did you mean `soil`"),
+        ("#fractal_box: 0 0 0 0.04 0.04 0 1.5 1 1 1 20 soil ground 7", 8, "fills no cell along z"),
+        ("#fractal_box: 0 0 0 0.04 0.04 0.06 1.5 1 1 1 20 soil ground 7", 8, "outside the domain"),
+        (&format!("{fractal}{fractal}"), 9, "the fractal box `ground` is defined already"),
+        (&format!("{fractal}{}", rough.replace("ground", "grind")), 9, "did you mean `ground`"),
+        (&format!("{fractal}{}", rough.replace(" 5\n", "\n")), 9, "without a seed"),
+        (&format!("{fractal}{rough}{rough}"), 10, "a second rough face"),
+        (&format!("{fractal}{}", rough.replace("0.014", "-0.014")), 9, "the least coordinate"),
+        (&format!("{fractal}{}", rough.replace("0.03 ", "0.05 ")), 9, "the largest coordinate"),
+        (
+            &format!("{fractal}{}", rough.replace("0 0 0.02 0.04 0.04 0.02", "0 0 0.01 0.04 0.04 0.01")),
+            9,
+            "an outer face",
+        ),
+        (&format!("{fractal}#add_surface_water: 0 0 0.02 0.04 0.04 0.02 0.02 ground"), 9, "not rough"),
+        (&format!("{fractal}{rough}#add_surface_water: 0 0 0.02 0.04 0.04 0.02 0.032 ground"), 10, "the level"),
+        ("#soil_peplinski: 1.1 0 1.6 2.66 0.1 0.2 dry", 8, "the share of sand"),
+        ("#soil_peplinski: 0.5 0.2 1.6 2.66 0.3 0.2 dry", 8, "the most water"),
+        ("#soil_peplinski: 0.5 0.2 1.6 0 0.1 0.2 dry", 8, "the density of sand"),
+        ("#soil_peplinski: 0.5 0.2 1.6 2.66 0.1 0.2 soil", 8, "is defined already"),
+        (
+            "#soil_peplinski: 1 0 1.6 2.66 0.1 0.2 s\n#fractal_box: 0 0 0 0.04 0.04 0.02 1 1 1 1 9 s g 7",
+            9,
+            "conductivity",
+        ),
+        ("#material_range: 9 3 0 0.1 1 1 0 0 ores", 8, "at least its least value"),
+        ("#material_range: 0.5 3 0 0.1 1 1 0 0 ores", 8, "the relative permittivity"),
+        ("#material_list: sand stone all", 8, "the material `stone` is not defined"),
+    ] {
+        let message = read(&format!("{head}{text}")).map(|_| ()).unwrap_err();
+        assert!(message.starts_with(&format!("FILE line {line}: ")) && message.contains(said), "{text}: {message}");
+    }
+    let model = read(&format!("{head}{fractal}{rough}")).unwrap();
+    // The 20 soils of gprMax 4.0.1's material table for these parameters begin with this one.
+    let first = &model.materials[3];
+    assert_eq!(model.materials.len(), 23);
+    assert!(
+        (first.eps_r - 3.860_243_163_900_857_4).abs() < 1e-12
+            && (first.sigma - 0.015_214_265_246_689_996).abs() < 1e-12,
+        "{first:?}"
+    );
+}

@@ -163,8 +163,8 @@ fn errors_name_the_line_and_what_to_do() {
         "FILE line 4: `#cilinder` is not a gprMax command\n\nhint: did you mean `#cylinder`?"
     );
     assert_eq!(
-        error("#fractal_box: 0.1 0.1 0.1 0.05 0.05 0.05 stone"),
-        "FILE line 4: `#fractal_box` is not supported by the embedded solver\n\nhint: `--solver gprmax` runs the file in gprMax itself"
+        error("#thin_wire: 0.1 0.1 0.1 0.05 0.05 0.05 0.001"),
+        "FILE line 4: `#thin_wire` is not supported by the embedded solver\n\nhint: `--solver gprmax` runs the file in gprMax itself"
     );
     assert_eq!(error("#domain: 1 1 1"), "FILE line 4: `#domain` stands for the second time, first in line 1");
     assert_eq!(

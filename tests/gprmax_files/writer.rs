@@ -204,7 +204,8 @@ fn meaning(model: &Model) -> Meaning {
         | Object::Sector { .. }
         | Object::Triangle { .. }
         | Object::Plate { .. }
-        | Object::Edge { .. } => Some(format!("{object:?}")),
+        | Object::Edge { .. }
+        | Object::Fractal(_) => Some(format!("{object:?}")),
         Object::Voxels(block) => block.cells.iter().any(Option::is_some).then(|| {
             let cells: Vec<_> = block.cells.iter().map(|cell| cell.map(|id| value(id, true))).collect();
             format!("voxels {:?} {:?} {} {cells:?}", block.origin, block.shape, block.averaging)

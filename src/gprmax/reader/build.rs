@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use super::commands::CommandKind;
 use super::directives::{Directives, directives};
 use super::error::InFileError;
+use super::fractal::Fractals;
 use super::include::Whole;
 use super::lines::split;
 use super::multiple::apply;
@@ -90,14 +91,29 @@ fn read_whole(path: &Path, text: &str) -> Result<Input, InFileError> {
             "cylindrical_sector",
             "plate",
             "edge",
+            "fractal_box",
             "geometry_objects_read",
             "geometry_objects_write",
         ],
         &["snapshot", "geometry_view"],
     ];
+    let mut fractals = Fractals::default();
     for pass in passes {
+        if pass.contains(&"fractal_box") {
+            // Mixtures first, then the boxes made of them and what is done to their faces.
+            let (mixtures, boxes) = Fractals::COMMANDS.split_at(3);
+            for names in [mixtures, boxes] {
+                for command in commands.iter().filter(|command| names.contains(&command.name)) {
+                    fractals.read(&mut model, command).map_err(at(command.line))?;
+                }
+            }
+        }
         for command in commands.iter().filter(|command| pass.contains(&command.name)) {
-            apply(&mut model, path, command, &mut notes).map_err(at(command.line))?;
+            if command.name == "fractal_box" {
+                model.objects.extend(fractals.object(command).map_err(at(command.line))?);
+            } else {
+                apply(&mut model, path, command, &mut notes).map_err(at(command.line))?;
+            }
         }
     }
     for command in &commands {

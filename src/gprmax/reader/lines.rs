@@ -95,8 +95,8 @@ mod tests {
         assert_eq!(of("#cilinder: 1"), "1: `#cilinder` is not a gprMax command\n\nhint: did you mean `#cylinder`?");
         assert_eq!(of("#xyzzyplugh: 1"), "1: `#xyzzyplugh` is not a gprMax command");
         assert_eq!(
-            of("#fractal_box: 1"),
-            "1: `#fractal_box` is not supported by the embedded solver\n\nhint: `--solver gprmax` runs the file in gprMax itself"
+            of("#thin_wire: 1"),
+            "1: `#thin_wire` is not supported by the embedded solver\n\nhint: `--solver gprmax` runs the file in gprMax itself"
         );
         assert_eq!(of("#title: a\n#title: b"), "2: `#title` stands for the second time, first in line 1");
         assert_eq!(

@@ -12,6 +12,7 @@ mod directives;
 mod dispersion;
 mod error;
 mod excitation;
+mod fractal;
 mod include;
 mod lines;
 mod multiple;

@@ -13,8 +13,9 @@ use super::pulse_files::{PulseFiles, sampled};
 use super::voxel_files::{VoxelFiles, command_safe};
 use crate::files::write_bytes;
 use crate::model::{
-    Averaging, Beyond, Formulation, GeometryFile, GeometryView, Grading, MagneticAveraging, Material, MaterialId,
-    Model, Object, Order, Resonance, Snapshot, SnapshotTime, Source, Stretch, TimeWindow, ViewKind, VoltageSource,
+    Averaging, Beyond, Formulation, FractalBox, GeometryFile, GeometryView, Grading, MagneticAveraging, Material,
+    MaterialId, Model, Object, Order, Resonance, Snapshot, SnapshotTime, Source, Stretch, TimeWindow, ViewKind,
+    VoltageSource,
 };
 
 /// The template that is built in.
@@ -409,8 +410,39 @@ fn object_line(
         Object::Edge { lower, upper, material } => {
             Ok(Some(format!("#edge: {} {} {}", point(lower), point(upper), name(material)?)))
         }
+        Object::Fractal(fractal) => fractal_lines(model, index, fractal).map(Some),
         Object::Voxels(block) => Ok(voxels.line(index, block)),
     }
+}
+
+/// A box of noise with its faces; several materials stand in a list, which is named after the object's place.
+fn fractal_lines(model: &Model, index: usize, fractal: &FractalBox) -> Result<String, WriteError> {
+    let joined = |numbers: &[f64]| numbers.iter().copied().map(number).collect::<Vec<_>>().join(" ");
+    let name = |id: &MaterialId| match model.materials.get(id.index()) {
+        Some(material) => Ok(material.id.as_str()),
+        None => Err(WriteError::Dangling { what: "material", index: id.index() }),
+    };
+    let names = fractal.materials.iter().map(name).collect::<Result<Vec<_>, _>>()?;
+    let (id, mut lines) = (format!("fractal-{}", index + 1), vec![]);
+    let of = match names[..] {
+        [only] => only.to_owned(),
+        _ => {
+            lines.push(format!("#material_list: {} {id}-materials", names.join(" ")));
+            format!("{id}-materials")
+        }
+    };
+    let numbers = [&fractal.lower[..], &fractal.upper, &[fractal.dimension], &fractal.weights].concat();
+    let (count, flag) = (names.len(), if fractal.averaging { "y" } else { "n" });
+    lines.push(format!("#fractal_box: {} {count} {of} {id} {} {flag}", joined(&numbers), fractal.seed));
+    for surface in &fractal.surfaces {
+        let corners = [surface.lower, surface.upper].concat();
+        let numbers = [&corners[..], &[surface.dimension], &surface.weights, &surface.range].concat();
+        lines.push(format!("#add_surface_roughness: {} {id} {}", joined(&numbers), surface.seed));
+        if let Some((depth, _)) = surface.water {
+            lines.push(format!("#add_surface_water: {} {} {id}", joined(&corners), number(depth)));
+        }
+    }
+    Ok(lines.join("\n"))
 }
 
 /// Refuses what gprMax would refuse, with the name of the thing.

@@ -50,6 +50,10 @@ impl<'a> VoxelFiles<'a> {
                     let parts = model.materials.get(material.index()).and_then(|m| m.directional);
                     files.in_commands.extend(parts.into_iter().flatten());
                 }
+                Object::Fractal(fractal) => {
+                    files.in_commands.extend(&fractal.materials);
+                    files.in_commands.extend(fractal.surfaces.iter().filter_map(|s| Some(s.water?.1)));
+                }
                 Object::Voxels(block) => {
                     let used = used(block);
                     if let Some(id) = used.iter().find(|id| id.index() >= model.materials.len()) {

@@ -1,5 +1,6 @@
 //! Objects snapped to the grid, and which cells of a plane they fill.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use super::PaintError;
@@ -60,7 +61,7 @@ enum Shape<'a> {
         to: usize,
     },
     Voxels {
-        voxels: &'a Voxels,
+        voxels: Cow<'a, Voxels>,
         origin: [i64; 3],
         claims: Vec<bool>,
     },
@@ -113,6 +114,10 @@ pub fn description(object: &Object) -> (&'static str, MaterialId, [f64; 3]) {
             let [p, q] = others(axis.index());
             (at[p], at[q]) = (centre[0], centre[1]);
             ("cylindrical sector", *material, at)
+        }
+        Object::Fractal(fractal) => {
+            let first = fractal.materials.first().copied();
+            ("fractal box", first.unwrap_or(MaterialId::FREE_SPACE), fractal.lower)
         }
         Object::Voxels(voxels) => {
             let first = voxels.cells.iter().flatten().next().copied();
@@ -241,25 +246,35 @@ impl<'a> Solid<'a> {
                 let shape = Shape::Line { along, from, to };
                 Ok(Self { number, cells: layout.turned(&cells), shape, material, claims: true })
             }
-            Object::Voxels(ref voxels) => {
-                if voxels.shape.iter().product::<usize>() != voxels.cells.len() {
-                    let (shape, cells) = (voxels.shape, voxels.cells.len());
-                    return Err(PaintError::VoxelCount { number, shape, cells });
-                }
-                for &material in voxels.cells.iter().flatten() {
-                    known(material)?;
-                }
-                let origin: [i64; 3] = std::array::from_fn(|axis| layout.grid.node(axis, voxels.origin[axis]));
-                let span = |axis: usize| {
-                    let inside = |node: i64| node.clamp(0, layout.grid.cells[axis] as i64) as usize;
-                    inside(origin[axis])..inside(origin[axis].saturating_add(voxels.shape[axis] as i64))
-                };
-                let cells = layout.turned(&std::array::from_fn(span));
-                let claims = materials.iter().map(|material| claims(model, material, voxels.averaging)).collect();
-                let shape = Shape::Voxels { voxels, origin, claims };
-                Ok(Self { number, cells, shape, material: MaterialId::FREE_SPACE, claims: false })
+            Object::Voxels(ref voxels) => Self::block(model, layout, number, Cow::Borrowed(voxels)),
+            Object::Fractal(ref fractal) => {
+                Self::block(model, layout, number, Cow::Owned(fractal.voxels(&layout.grid)))
             }
         }
+    }
+
+    /// A block of cells.
+    fn block(model: &'a Model, layout: &Layout, number: usize, voxels: Cow<'a, Voxels>) -> Result<Self, PaintError> {
+        let materials = &model.materials;
+        if voxels.shape.iter().product::<usize>() != voxels.cells.len() {
+            let (shape, cells) = (voxels.shape, voxels.cells.len());
+            return Err(PaintError::VoxelCount { number, shape, cells });
+        }
+        for &material in voxels.cells.iter().flatten() {
+            if material.index() >= materials.len() {
+                let (material, materials) = (material.index(), materials.len());
+                return Err(PaintError::NoSuchMaterial { number, material, materials });
+            }
+        }
+        let origin: [i64; 3] = std::array::from_fn(|axis| layout.grid.node(axis, voxels.origin[axis]));
+        let span = |axis: usize| {
+            let inside = |node: i64| node.clamp(0, layout.grid.cells[axis] as i64) as usize;
+            inside(origin[axis])..inside(origin[axis].saturating_add(voxels.shape[axis] as i64))
+        };
+        let cells = layout.turned(&std::array::from_fn(span));
+        let claims = materials.iter().map(|material| claims(model, material, voxels.averaging)).collect();
+        let shape = Shape::Voxels { voxels, origin, claims };
+        Ok(Self { number, cells, shape, material: MaterialId::FREE_SPACE, claims: false })
     }
 
     /// A prism or, where it is no cell thick, a sheet. `reach`: nodes along the two other axes; `ends`: node and cells across.
@@ -356,7 +371,7 @@ impl<'a> Solid<'a> {
                 }
                 filled
             }
-            Shape::Voxels { voxels, origin, ref claims } => self.fill_voxels(plane, voxels, origin, claims),
+            Shape::Voxels { ref voxels, origin, ref claims } => self.fill_voxels(plane, voxels, origin, claims),
         }
     }
 

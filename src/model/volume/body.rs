@@ -1,5 +1,7 @@
 //! The true shapes of objects, and what they share with boxes.
 
+use std::borrow::Cow;
+
 use super::part::{Part, Region, dot};
 use crate::geometry::{ball_box_volume, ball_column_volume, disc_rectangle_area, half_space_share};
 use crate::model::{Grid, MaterialId, Object, Voxels};
@@ -34,7 +36,7 @@ enum Shape<'a> {
     /// What lies inside of all of these.
     Parts(Vec<Part>),
     Cells {
-        voxels: &'a Voxels,
+        voxels: Cow<'a, Voxels>,
         spacing: [f64; 3],
     },
 }
@@ -110,14 +112,19 @@ impl<'a> Body<'a> {
                 }
                 body(low, high, material, Shape::Parts(parts))
             }
-            Object::Voxels(ref voxels) => {
-                let node = |axis: usize| grid.node(axis, voxels.origin[axis]) as f64 * grid.spacing[axis];
-                let low: [f64; 3] = std::array::from_fn(node);
-                let high = std::array::from_fn(|axis| low[axis] + voxels.shape[axis] as f64 * grid.spacing[axis]);
-                body(low, high, MaterialId::FREE_SPACE, Shape::Cells { voxels, spacing: grid.spacing })
-            }
+            Object::Voxels(ref voxels) => Self::block(Cow::Borrowed(voxels), grid),
+            Object::Fractal(ref fractal) => Self::block(Cow::Owned(fractal.voxels(grid)), grid),
             Object::Plate { .. } | Object::Edge { .. } => None,
         }
+    }
+
+    /// A block of cells, snapped as it is.
+    fn block(voxels: Cow<'a, Voxels>, grid: &Grid) -> Option<Self> {
+        let node = |axis: usize| grid.node(axis, voxels.origin[axis]) as f64 * grid.spacing[axis];
+        let low: [f64; 3] = std::array::from_fn(node);
+        let high: [f64; 3] = std::array::from_fn(|axis| low[axis] + voxels.shape[axis] as f64 * grid.spacing[axis]);
+        let shape = Shape::Cells { voxels, spacing: grid.spacing };
+        (0..3).all(|axis| high[axis] > low[axis]).then_some(Self { low, high, material: MaterialId::FREE_SPACE, shape })
     }
 
     /// How it lies to a box.
@@ -150,7 +157,7 @@ impl<'a> Body<'a> {
                     sides().all(|side| side == Some(true)).then_some(true)
                 }
             }
-            Shape::Cells { voxels, spacing } => {
+            Shape::Cells { ref voxels, spacing } => {
                 let cell = |at: [f64; 3]| -> [f64; 3] {
                     std::array::from_fn(|axis| ((at[axis] - self.low[axis]) / spacing[axis]).floor())
                 };
