@@ -48,6 +48,17 @@ impl Mode {
         }
     }
 
+    /// Axes along which magnetic dipoles may point.
+    pub fn magnetic_polarisations(self) -> &'static [&'static str] {
+        match self {
+            Self::Tmz => &["x", "y"],
+            Self::Tmx => &["y", "z"],
+            Self::Tmy => &["x", "z"],
+            Self::Te => &["z"],
+            Self::Three => &["x", "y", "z"],
+        }
+    }
+
     /// The axis along which nothing changes.
     pub fn invariant(self) -> Option<usize> {
         match self {

@@ -50,9 +50,33 @@ fn draw(seed: u64) -> (Mode, String) {
                 rest += delta;
             }
             text += &format!(" {name}\n");
+        } else if random.random_bool(0.3) {
+            // Within what a step can follow (the shortest cell sets it), and damped so that the resonance is no spike.
+            let shortest = spacing.iter().fold(f64::INFINITY, |shortest, d| shortest.min(*d));
+            let fastest = 299_792_458.0 / (2.0 * std::f64::consts::PI * shortest);
+            if random.random_bool(0.5) && eps >= 4.0 {
+                let (delta, f) = (random.random_range(0.0..4.0), random.random_range(0.01..0.5) * fastest);
+                let damping = random.random_range(0.3..0.9) * 2.0 * std::f64::consts::PI * f;
+                text += &format!("#add_dispersion_lorentz: 1 {delta:.4} {f:e} {damping:e} {name}\n");
+                rest += 2.0 * delta;
+            } else {
+                let f = random.random_range(0.001..0.02) * fastest;
+                let collisions = random.random_range(0.3..3.0) * 2.0 * std::f64::consts::PI * f;
+                text += &format!("#add_dispersion_drude: 1 {f:e} {collisions:e} {name}\n");
+            }
         }
         densest = densest.max(rest * mu);
         names.push(name);
+    }
+    if random.random_bool(0.2) {
+        text += "#magnetic_averaging: arithmetic\n";
+    }
+    if random.random_bool(0.15) {
+        text += "#dispersive_averaging: y\n";
+    }
+    if random.random_bool(0.2) {
+        text += &noise(mode, cells, spacing, &mut random);
+        densest = densest.max(8.0);
     }
     // Five cells in the shortest wave.
     let longest = spacing.iter().fold(0.0f64, |longest, d| longest.max(*d));
@@ -70,7 +94,19 @@ fn draw(seed: u64) -> (Mode, String) {
     for _ in 0..random.random_range(1..4) {
         let polarisation = mode.polarisations()[random.random_range(0..mode.polarisations().len())];
         let place = inner(&mut random);
-        text += &format!("#hertzian_dipole: {polarisation} {place} w{}\n#rx: {place}\n", random.random_range(0..3));
+        let wave = random.random_range(0..3);
+        text += &match random.random_range(0..6) {
+            0 => {
+                let across = mode.magnetic_polarisations();
+                format!("#magnetic_dipole: {} {place} w{wave}\n", across[random.random_range(0..across.len())])
+            }
+            1 => {
+                let ohm = if random.random_bool(0.3) { 0.0 } else { random.random_range(1.0..300.0) };
+                format!("#voltage_source: {polarisation} {place} {ohm:.3} w{wave}\n")
+            }
+            _ => format!("#hertzian_dipole: {polarisation} {place} w{wave}\n"),
+        };
+        text += &format!("#rx: {place}\n");
     }
     for _ in 0..random.random_range(1..6) {
         text += &format!("#rx: {}\n", inner(&mut random));
@@ -78,29 +114,82 @@ fn draw(seed: u64) -> (Mode, String) {
     (mode, text)
 }
 
-/// Draws a box, a cylinder or a sphere.
-fn object(mode: Mode, cells: [usize; 3], spacing: [f64; 3], names: &[String], random: &mut Pcg64) -> String {
-    let material = &names[random.random_range(0..names.len())];
-    let averaging = if random.random_bool(0.7) { "y" } else { "n" };
-    let extent = |axis: usize| cells[axis] as f64 * spacing[axis];
-    let shortest = (0..3).filter(|&axis| cells[axis] > 2).map(extent).fold(f64::INFINITY, f64::min);
-    let radius = random.random_range(0.1..0.45) * shortest;
+/// Draws a box of noise, of four materials.
+fn noise(mode: Mode, cells: [usize; 3], spacing: [f64; 3], random: &mut Pcg64) -> String {
+    let [a, b] = corners(mode, cells, random).map(|corner| mode.point(corner, spacing));
+    let (dimension, seed) = (random.random_range(0.0..3.0), random.random_range(0..1000));
+    format!(
+        "#material_range: 2 8 0 0.05 1 1.2 0 5 ores\n#fractal_box: {a} {b} {dimension:.2} 1 2 1 4 ores lode {seed}\n"
+    )
+}
+
+/// The corners of a box.
+fn corners(mode: Mode, cells: [usize; 3], random: &mut Pcg64) -> [[usize; 3]; 2] {
     let mut low: [usize; 3] = std::array::from_fn(|axis| random.random_range(0..cells[axis]));
     let mut high: [usize; 3] = std::array::from_fn(|axis| random.random_range(low[axis] + 1..=cells[axis]));
     if let Some(axis) = mode.invariant() {
         (low[axis], high[axis]) = (0, cells[axis]);
     }
+    [low, high]
+}
+
+/// Draws an object of any shape.
+fn object(mode: Mode, cells: [usize; 3], spacing: [f64; 3], names: &[String], random: &mut Pcg64) -> String {
+    let mut material = names[random.random_range(0..names.len())].clone();
+    let mut flag = if random.random_bool(0.7) { " y" } else { " n" };
+    if random.random_bool(0.15) {
+        // One for each axis, none of them a conductor.
+        let any = |random: &mut Pcg64| names[random.random_range(1..names.len())].as_str();
+        (material, flag) = ([any(random), any(random), any(random)].join(" "), "");
+    }
+    let extent = |axis: usize| cells[axis] as f64 * spacing[axis];
+    let shortest = (0..3).filter(|&axis| cells[axis] > 2).map(extent).fold(f64::INFINITY, f64::min);
+    let radius = random.random_range(0.1..0.45) * shortest;
+    let [low, high] = corners(mode, cells, random);
     let (a, b) = (mode.point(low, spacing), mode.point(high, spacing));
-    match random.random_range(0..3) {
-        0 => format!("#box: {a} {b} {material} {averaging}\n"),
-        1 => {
-            let axis = mode.invariant().unwrap_or(random.random_range(0..3));
+    let along = mode.invariant().unwrap_or(random.random_range(0..3));
+    let [p, q] = [[1, 2], [0, 2], [0, 1]][along];
+    let metres = |node: [usize; 3], axis: usize| node[axis] as f64 * spacing[axis];
+    let solid = mode == Mode::Three;
+    match random.random_range(0..9) {
+        0 => {
             let mut end = low;
-            end[axis] = high[axis];
-            format!("#cylinder: {a} {} {radius:.6} {material} {averaging}\n", mode.point(end, spacing))
+            end[along] = high[along];
+            format!("#cylinder: {a} {} {radius:.6} {material}{flag}\n", mode.point(end, spacing))
         }
-        _ if mode == Mode::Three => format!("#sphere: {a} {radius:.6} {material} {averaging}\n"),
-        _ => format!("#box: {a} {b} {material} {averaging}\n"),
+        1 if solid => format!("#sphere: {a} {radius:.6} {material}{flag}\n"),
+        2 => {
+            let [x, y, z]: [f64; 3] = std::array::from_fn(|_| random.random_range(0.5..1.0) * radius);
+            format!("#ellipsoid: {a} {x:.6} {y:.6} {z:.6} {material}{flag}\n")
+        }
+        3 if solid => format!("#cone: {a} {b} {radius:.6} {:.6} {material}{flag}\n", 0.3 * radius),
+        4 => {
+            let (start, sweep) = (random.random_range(0.0..359.0), random.random_range(30.0..359.0));
+            let [u, v, from, to] = [metres(low, p), metres(low, q), metres(low, along), metres(high, along)];
+            let axis = ["x", "y", "z"][along];
+            let place = format!("{axis} {u:.7} {v:.7} {from:.7} {to:.7}");
+            format!("#cylindrical_sector: {place} {radius:.6} {start:.1} {sweep:.1} {material}{flag}\n")
+        }
+        5 => {
+            let (mut second, mut third) = (low, low);
+            (second[p], third[q]) = (high[p], high[q]);
+            let thickness = metres(high, along) - metres(low, along);
+            let [b, c] = [second, third].map(|corner| mode.point(corner, spacing));
+            format!("#triangle: {a} {b} {c} {thickness:.7} {material}{flag}\n")
+        }
+        6 => {
+            let mut end = high;
+            end[p] = low[p];
+            let material = material.split(' ').next().unwrap_or("pec");
+            format!("#plate: {a} {} {material}\n", mode.point(end, spacing))
+        }
+        7 => {
+            let mut end = low;
+            end[along] = high[along];
+            let material = material.split(' ').next().unwrap_or("pec");
+            format!("#edge: {a} {} {material}\n", mode.point(end, spacing))
+        }
+        _ => format!("#box: {a} {b} {material}{flag}\n"),
     }
 }
 
@@ -112,7 +201,8 @@ fn same_bits(a: &Traces, b: &Traces) -> bool {
     })
 }
 
-/// At least 200 of 250 scenes run (the others have a source in a conductor, or an object that fills no cell).
+/// At least 200 of 250 scenes run (the others have a source in a conductor, a hard voltage in a dispersive medium, or an object
+/// that fills no cell).
 ///
 /// Single precision stays within `8 * 6e-8 * 120` of the strongest E (and H) of the scene, receivers at every source: eight
 /// roundings in a step, half a unit in the last place of the strongest value each, added up over 120 steps at worst.

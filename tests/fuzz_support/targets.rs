@@ -194,7 +194,7 @@ fn said(error: &dyn std::error::Error) -> bool {
 }
 
 /// Words of input files; commands are taken from the reader's own table.
-const WORDS_IN: [&str; 40] = [
+const WORDS_IN: [&str; 46] = [
     "x",
     "y",
     "z",
@@ -235,6 +235,12 @@ const WORDS_IN: [&str; 40] = [
     "HORIPML",
     "MRIPML",
     "view.vtkhdf",
+    "soil",
+    "ores",
+    "ground",
+    "x0",
+    "zmax",
+    "snap.h5",
 ];
 
 /// Words of the other formats.
