@@ -37,7 +37,7 @@ pub use checkpoint::{CheckpointError, CheckpointEvent, Checkpoints};
 pub use error::FdtdError;
 pub use instructions::InstructionSet;
 pub use keeping::{Keeping, Snapshots};
-pub use predict::{Prediction, memory, predict};
+pub use predict::{Prediction, TimeShares, memory, predict};
 pub use reach::{Reach, reach};
 pub use solver::{Fdtd, Precision, Stats, Stepping};
 pub use three::{memory_three, predict_three};

@@ -10,7 +10,9 @@ use super::conductor::Cuts;
 use super::layout::{Rows, padded_width};
 use super::reach::Cones;
 use super::setup::Setup;
+use super::slab::Slab;
 use super::solver::{Fdtd, Precision, Stepping};
+use super::team;
 use crate::model::{
     DebyePole, Grid, MOST_POLES_IN_A_PLANE, Material, Model, Object, Order, Painted, TimeWindow, paint,
 };
@@ -26,14 +28,28 @@ pub struct Prediction {
     pub cell_steps: u64,
     /// Share of them that is left out, because no wave is there that a receiver will see.
     pub share_saved: f64,
+    /// What of the time each effect takes.
+    pub shares: TimeShares,
 }
 
-/// Cells of the trial runs: more than the inner caches hold, so that a larger model runs at the same speed.
-const TRIAL_CELLS: usize = 250_000;
-/// Cell-steps of the shorter trial run: one or two milliseconds.
-const TRIAL_CELL_STEPS: usize = 2_400_000;
-/// Runs of each length, of which the fastest counts.
-const TRIALS: usize = 3;
+/// What of the time of a step an effect takes, in [0, 1]; `None` where it is absent, or was not tried.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct TimeShares {
+    /// Conduction.
+    pub conduction: Option<f64>,
+    /// Poles.
+    pub dispersion: Option<f64>,
+    /// The absorbing boundary.
+    pub boundary: Option<f64>,
+}
+
+/// Cells up to which the model itself is tried, and of a part of which a larger one is predicted: what they take no cache
+/// holds any more.
+const MOST_TRIED_CELLS: usize = 8_000_000;
+/// Cell-steps of the longer trial run: some ten milliseconds.
+const TRIAL_CELL_STEPS: usize = 60_000_000;
+/// Runs of each kind, of which the middle one counts.
+const TRIALS: usize = 5;
 
 /// Memory of the fields and coefficients of a two-dimensional model, bytes.
 ///
@@ -43,69 +59,106 @@ pub fn memory(model: &Model, painted: &Painted, precision: Precision) -> Result<
     Ok(bytes_needed(&Setup::new(model, painted)?, precision))
 }
 
-/// Predicts memory and wall time in single precision, from trial runs of some twenty milliseconds in all on this machine;
-/// twice that for a model with Debye media.
+/// Predicts memory and wall time in single precision, from some steps of the model itself on this machine: about 0.1 s, twice
+/// to four times as much where effects are to be told apart. A model of more than eight million cells is tried on as many of
+/// its rows as make so many.
 ///
-/// The trials have rows as long as the model's, the same coefficients and the same threads; the time of the dispersive
-/// nodes is the difference of two of them.
+/// What light cones leave out is taken off, the nodes that the busiest thread of each step must make being what counts.
 ///
 /// # Errors
 /// Whatever the solver cannot do, as [`Fdtd::solve_stats`] would say it.
 pub fn predict(model: &Model, painted: &Painted, threads: Option<NonZeroUsize>) -> Result<Prediction, FdtdError> {
     let setup = Setup::new(model, painted)?;
     let fdtd = Fdtd { threads, ..Fdtd::default() };
-    let bytes = bytes_needed(&setup, Precision::Single);
     let cells = model.grid.cell_count();
-    let poles = poles_per_node(&setup);
-    let plain = trial(&fdtd, model, setup.lossy(), 0)?;
-    let mut per_step = plain * cells as f64;
-    for (count, &nodes) in poles.iter().enumerate().skip(1).filter(|(_, nodes)| **nodes > 0) {
-        let extra = (trial(&fdtd, model, setup.lossy(), count)? - plain).max(0.0);
-        per_step += extra * nodes as f64;
-    }
-    let steps = setup.iterations;
-    let share_saved = Cones::new(&setup, true).reach().share_saved;
-    let seconds = per_step * steps as f64 * (1.0 - share_saved);
-    Ok(Prediction { bytes, seconds, cell_steps: cells as u64 * steps as u64, share_saved })
+    let (per_step, shares) = if cells <= MOST_TRIED_CELLS {
+        try_out(&fdtd, model, &setup)?
+    } else {
+        let (part, even) = even_part(model, &setup)?;
+        let (per_step, shares) = try_out(&fdtd, &part, &Setup::new(&part, &even)?)?;
+        (per_step * cells as f64 / part.grid.cell_count() as f64, shares)
+    };
+    let cones = Cones::new(&setup, true);
+    let seconds =
+        per_step * setup.iterations as f64 * team::share_of_time::<f32>(&setup, &cones, fdtd.threads_for(model));
+    Ok(Prediction {
+        bytes: bytes_needed(&setup, Precision::Single),
+        seconds,
+        cell_steps: cells as u64 * setup.iterations as u64,
+        share_saved: cones.reach().share_saved,
+        shares,
+    })
 }
 
-/// Seconds per cell and step of an even material on a grid with the model's rows.
-fn trial(fdtd: &Fdtd, model: &Model, lossy: bool, poles: usize) -> Result<f64, FdtdError> {
-    let [nx, ny, _] = model.grid.cells;
-    let nx = nx.min((TRIAL_CELLS / ny).max(32));
-    let grid = Grid { cells: [nx, ny, 1], spacing: model.grid.spacing };
-    let mut even = Model::new("", grid, TimeWindow::Iterations(1));
-    let mut absorbing = model.absorbing_cells();
-    if nx < model.grid.cells[0] {
-        (absorbing[0], absorbing[3]) = (0, 0);
+/// Seconds per step when every cell is stepped, and what of them each effect takes: what a step without it takes less.
+fn try_out(fdtd: &Fdtd, model: &Model, setup: &Setup<'_>) -> Result<(f64, TimeShares), FdtdError> {
+    let without = |present: bool, change: &dyn Fn(&mut Setup<'_>)| {
+        present.then(|| {
+            let mut setup = setup.clone();
+            change(&mut setup);
+            setup
+        })
+    };
+    let lossless = without(setup.lossy(), &|setup| setup.edges.iter_mut().for_each(|edge| edge.ca = 1.0));
+    let poles = setup.edges.iter().any(|edge| !edge.poles.is_empty());
+    let plain = without(poles, &|setup| setup.edges.iter_mut().for_each(|edge| edge.poles.clear()));
+    let walled = without(setup.slabs.iter().any(|slab| slab.cells > 0), &|setup| setup.slabs = [Slab::none(); 4]);
+    let kinds = [Some(setup.clone()), lossless, plain, walled];
+    let mut times = [const { vec![] }; 4];
+    // In turns, so that all kinds meet the same load.
+    for _ in 0..TRIALS {
+        for (times, kind) in times.iter_mut().zip(&kinds) {
+            if let Some(kind) = kind {
+                times.push(seconds_per_step(fdtd, model, kind)?);
+            }
+        }
     }
-    even.pml_cells = Some(absorbing);
-    even.threads = model.threads;
-    even.order = model.order;
-    let mut material = Material::dielectric("trial", 4.0, if lossy { 0.01 } else { 0.0 });
+    let middle = times.map(|mut times: Vec<f64>| {
+        times.sort_by(f64::total_cmp);
+        times.get(times.len() / 2).copied()
+    });
+    let all = middle[0].unwrap_or(0.0);
+    let [_, conduction, dispersion, boundary] = middle.map(|less| less.map(|less| (1.0 - less / all).clamp(0.0, 1.0)));
+    Ok((all, TimeShares { conduction, dispersion, boundary }))
+}
+
+/// Wall time of a step, from the difference of a longer and a shorter run: starting threads and touching memory for the first
+/// time are left out.
+fn seconds_per_step(fdtd: &Fdtd, model: &Model, setup: &Setup<'_>) -> Result<f64, FdtdError> {
+    let stepping = Stepping { skip: false, ..Stepping::default() };
+    let pass = fdtd.steps_per_pass(model, setup);
+    let passes = (TRIAL_CELL_STEPS / (model.grid.cell_count() * pass)).clamp(2, 1000);
+    let seconds = |steps: usize| {
+        // One sample more than steps: the last sample is taken after the last step.
+        let mut some = setup.clone();
+        some.set_iterations(steps + 1);
+        fdtd.run::<f32>(model, &some, stepping, &|_| ControlFlow::Continue(())).map(|(_, stats)| stats.wall.si())
+    };
+    let (short, long) = (seconds(pass)?, seconds((1 + passes) * pass)?);
+    // A short run that was held up tells nothing.
+    let whole = long / ((1 + passes) * pass) as f64;
+    Ok(((long - short) / (passes * pass) as f64).max(0.5 * whole))
+}
+
+/// As many rows of a large model as are tried, of its commonest kind of material.
+fn even_part(model: &Model, setup: &Setup<'_>) -> Result<(Model, Painted), FdtdError> {
+    let [nx, ny, _] = model.grid.cells;
+    let rows = (MOST_TRIED_CELLS / ny).clamp(32.min(nx), nx);
+    let mut part =
+        Model::new("", Grid { cells: [rows, ny, 1], spacing: model.grid.spacing }, TimeWindow::Iterations(1));
+    let mut absorbing = model.absorbing_cells();
+    (absorbing[0], absorbing[3]) = (0, 0);
+    part.pml_cells = Some(absorbing);
+    (part.threads, part.order) = (model.threads, model.order);
+    let nodes = poles_per_node(setup);
+    let poles = (0..nodes.len()).max_by_key(|&poles| nodes[poles]).unwrap_or(0);
+    let mut material = Material::dielectric("trial", 4.0, if setup.lossy() { 0.01 } else { 0.0 });
     material.poles = (0..poles).map(|pole| DebyePole { delta_eps: 1.0, tau: 1e-11 * (pole + 1) as f64 }).collect();
     material.averagable = poles == 0;
-    let id = even.add_material(material);
-    even.objects.push(Object::Box { lower: [0.0; 3], upper: [f64::MAX; 3], material: id, averaging: true });
-    let painted = paint(&even)?;
-    let mut seconds = |steps: usize| {
-        // One sample more than steps: the last sample is taken after the last step.
-        even.time_window = TimeWindow::Iterations(steps + 1);
-        let stepping = Stepping { skip: false, ..Stepping::default() };
-        let solved = fdtd.solve_stepping(&even, &painted, stepping, &|_| ControlFlow::Continue(()));
-        solved.map(|(_, stats)| stats.wall.si())
-    };
-    // The difference leaves out what a run pays once: starting threads and touching memory for the first time. Short and
-    // long runs take turns, so that both meet the same load.
-    let steps = (TRIAL_CELL_STEPS / (nx * ny)).clamp(16, 512) / 16 * 16;
-    let (mut short, mut long) = (f64::INFINITY, f64::INFINITY);
-    for _ in 0..TRIALS {
-        short = short.min(seconds(steps)?);
-        long = long.min(seconds(3 * steps)?);
-    }
-    let marginal = (long - short) / (2 * steps) as f64;
-    let whole = long / (3 * steps) as f64;
-    Ok(if marginal > 0.2 * whole { marginal } else { whole } / (nx * ny) as f64)
+    let id = part.add_material(material);
+    part.objects.push(Object::Box { lower: [0.0; 3], upper: [f64::MAX; 3], material: id, averaging: true });
+    let painted = paint(&part)?;
+    Ok((part, painted))
 }
 
 /// How many nodes have 0, 1, 2, … Debye poles.

@@ -10,6 +10,7 @@ use crate::model::{
 use crate::units::constants::MU_0;
 
 /// All that the blocks are built from.
+#[derive(Clone)]
 pub struct Setup<'a> {
     pub painted: &'a Painted,
     pub edges: Vec<Edge>,
@@ -25,6 +26,7 @@ pub struct Setup<'a> {
 }
 
 /// A source at a node.
+#[derive(Clone)]
 pub struct NodeDrive {
     pub i: usize,
     pub j: usize,
@@ -59,6 +61,12 @@ impl<'a> Setup<'a> {
             dt: model.time_step(),
             spacing: model.grid.spacing,
         })
+    }
+
+    /// Takes so many samples in place of those that the model asks for; sources that have come to their end stay silent.
+    pub fn set_iterations(&mut self, iterations: usize) {
+        self.iterations = iterations;
+        self.drives.iter_mut().for_each(|drive| drive.series.resize(iterations, 0.0));
     }
 
     /// Whether any edge conducts.

@@ -180,7 +180,13 @@ impl Fdtd {
         team::worthwhile_threads(model.grid.cell_count(), model.grid.cells[0] - 1, wanted)
     }
 
-    fn run<T: Real>(
+    /// Steps that a row of a model takes while it is in the cache.
+    pub(super) fn steps_per_pass(&self, model: &Model, setup: &Setup<'_>) -> usize {
+        team::steps_per_pass::<f32>(setup, self.threads_for(model))
+    }
+
+    /// Runs a model that has been turned into numbers.
+    pub(super) fn run<T: Real>(
         &self,
         model: &Model,
         setup: &Setup<'_>,

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 
 use super::super::checkpoint::Keeper;
 use super::super::keeping::Keeping;
-use super::super::predict::Prediction;
+use super::super::predict::{Prediction, TimeShares};
 use super::super::{Fdtd, FdtdError, Precision, Stats};
 use super::absorbing::Absorbing;
 use super::camera::{Camera, Look};
@@ -291,5 +291,5 @@ pub fn predict_three(
     let cell_steps = model.grid.cell_count() as u64 * setup.iterations as u64;
     let share_saved = Cones::new(&setup, true).reach().share_saved;
     let seconds = per_cell * cell_steps as f64 * (1.0 - share_saved);
-    Ok(Prediction { bytes, seconds, cell_steps, share_saved })
+    Ok(Prediction { bytes, seconds, cell_steps, share_saved, shares: TimeShares::default() })
 }
