@@ -1,7 +1,10 @@
 //! A B-scan: several traces of one input file, sources and receivers moved between them, the geometry painted once.
 
 use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Instant;
 
 use crate::cli::error::CliError;
@@ -45,19 +48,41 @@ impl Geometry {
         solver: &Fdtd,
         model: &Model,
         keeping: Keeping<'_>,
-        bar: &Bar,
-        done: usize,
-        total: usize,
+        shown: &Shown<'_>,
     ) -> Result<(Traces, Stats), FdtdError> {
-        // A thousand parts for each trace, so that the bar moves within one, too.
+        let told = AtomicUsize::new(0);
         let on_progress = |progress: Progress| {
-            let within = 1000 * progress.done / progress.total.max(1);
-            bar.update(Progress { done: 1000 * done + within, total: 1000 * total })
+            let within = PARTS * progress.done / progress.total.max(1);
+            shown.add(within.saturating_sub(told.fetch_max(within, Ordering::Relaxed)))
         };
         Ok(match self {
             Self::Two(painted) => solver.solve_painted(model, painted, &on_progress)?,
             Self::Three(painted) => solver.solve_painted_three_kept(model, painted, keeping, &on_progress)?,
         })
+    }
+
+    /// How many of `count` traces are made at once, one thread each, which saves what threads tell each other; 1 where all
+    /// threads go into one trace: in three dimensions, and where too few traces would leave threads idle.
+    fn side_by_side(&self, threads: usize, count: usize) -> usize {
+        let even = count.is_multiple_of(threads) || count >= 8 * threads;
+        if matches!(self, Self::Two(_)) && even { threads } else { 1 }
+    }
+}
+
+/// Parts of a trace on the bar, so that it moves within one, too.
+const PARTS: usize = 1000;
+
+/// The progress of all traces together.
+struct Shown<'a> {
+    bar: &'a Bar,
+    done: AtomicUsize,
+    total: usize,
+}
+
+impl Shown<'_> {
+    fn add(&self, parts: usize) -> ControlFlow<()> {
+        let done = self.done.fetch_add(parts, Ordering::Relaxed) + parts;
+        self.bar.update(Progress { done, total: self.total })
     }
 }
 
@@ -91,20 +116,26 @@ pub fn run(args: &RunArgs, count: NonZeroUsize) -> Result<(), CliError> {
         albums.push(if kept.is_none() { Some(Album::open(&model, result, args.force)?) } else { None });
     }
     let geometry = Geometry::of(&model)?;
-    let solver = built_in_solver(args);
+    let mut solver = built_in_solver(args);
+    let asked = solver.threads.or_else(|| model.threads.and_then(NonZeroUsize::new));
+    let threads = asked.or_else(|| std::thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
+    let side_by_side = geometry.side_by_side(threads.get(), count.get());
+    if side_by_side > 1 {
+        solver.threads = Some(NonZeroUsize::MIN);
+    }
     let bar = Bar::new("B-scan");
-    let mut outcomes = Vec::new();
-    for (trace, (result, album)) in results.into_iter().zip(albums).enumerate() {
+    let shown = Shown { bar: &bar, done: AtomicUsize::new(0), total: PARTS * count.get() };
+    let one = |trace: usize, result: PathBuf, album: Option<Album>| -> Result<Outcome, CliError> {
         let files = vec![];
         if let Some(record) = kept_or_refused(args, &result, &fingerprint)? {
-            outcomes.push(Outcome { target: target.clone(), result, files, kept: true, record });
-            continue;
+            let _ = shown.add(PARTS);
+            return Ok(Outcome { target: target.clone(), result, files, kept: true, record });
         }
         let album = album.map_or_else(|| Album::open(&model, &result, args.force), Ok)?;
         let started = Instant::now();
         let moved = model.at_trace(trace);
         let ((traces, stats), used) = snapshots::solve_kept(&args.keep, &album, &result, |keeping| {
-            geometry.solve(&solver, &moved, keeping, &bar, trace, count.get())
+            geometry.solve(&solver, &moved, keeping, &shown)
         })?;
         gprmax::write_traces(&result, &traces, &moved)?;
         let mut files = album.publish()?;
@@ -112,8 +143,10 @@ pub fn run(args: &RunArgs, count: NonZeroUsize) -> Result<(), CliError> {
         used.remove();
         let record: RunRecord = record(args, &fingerprint, started, Some(stats.wall.si()));
         record.write_beside(&result)?;
-        outcomes.push(Outcome { target: target.clone(), result, files, kept: false, record });
-    }
+        Ok(Outcome { target: target.clone(), result, files, kept: false, record })
+    };
+    let traces: Vec<_> = results.into_iter().zip(albums).enumerate().collect();
+    let mut outcomes = in_turn(side_by_side, traces, |(trace, (result, album))| one(trace, result, album))?;
     drop(bar);
     if let Some(outcome) = outcomes.iter_mut().find(|outcome| !outcome.kept) {
         outcome.files.extend(geometry_files::write(&model, &input)?);
@@ -132,6 +165,34 @@ pub fn run(args: &RunArgs, count: NonZeroUsize) -> Result<(), CliError> {
         println!("{} written", file.display());
     }
     Ok(())
+}
+
+/// What becomes of each thing, in order, `side_by_side` at a time; the first failure in that order.
+fn in_turn<A: Send, B: Send>(
+    side_by_side: usize,
+    things: Vec<A>,
+    one: impl Fn(A) -> Result<B, CliError> + Sync,
+) -> Result<Vec<B>, CliError> {
+    if side_by_side == 1 {
+        return things.into_iter().map(one).collect();
+    }
+    let slots: Vec<_> = things.iter().map(|_| Mutex::new(None)).collect();
+    let (queue, failed) = (Mutex::new(things.into_iter().enumerate()), AtomicBool::new(false));
+    let next = || queue.lock().ok().filter(|_| !failed.load(Ordering::Relaxed)).and_then(|mut queue| queue.next());
+    std::thread::scope(|scope| {
+        for _ in 0..side_by_side {
+            scope.spawn(|| {
+                while let Some((index, thing)) = next() {
+                    let outcome = one(thing);
+                    failed.fetch_or(outcome.is_err(), Ordering::Relaxed);
+                    if let Ok(mut slot) = slots[index].lock() {
+                        *slot = Some(outcome);
+                    }
+                }
+            });
+        }
+    });
+    slots.into_iter().filter_map(|slot| slot.into_inner().ok().flatten()).collect()
 }
 
 /// `scan.h5` becomes `scan3.h5`.
