@@ -5,33 +5,45 @@ use super::super::slab::{Filter, Slab};
 use super::super::state::{Numbers, State};
 use super::kernel::{ColumnFilter, ColumnProfile, RowFilter, RowProfile};
 use super::setup::Setup3;
-use super::sheet::{LANES, Sheet};
+use super::sheet::{LANES, Sheets, padded};
 
 /// The memory of the two E and the two H components that a slab across one axis corrects, and the factors that stand
 /// before the difference in their curls (a sign, and the ratio of non-cubic cells).
 ///
 /// A slab across axis `a` corrects, of E and of H alike, the components along the two axes after it in cyclic order: the
 /// first of them by the second's conjugate with a minus in E, the second by the first's with a plus (in H the other way).
+///
+/// E of the first and second component, then H: one number for each difference, two in second order.
 #[derive(Debug)]
 pub struct Memory<T> {
-    /// First component, then second.
-    pub e: [Store<T>; 2],
-    /// First component, then second.
-    pub h: [Store<T>; 2],
-}
-
-/// The memory of one component: one number for each difference, two in second order.
-#[derive(Debug)]
-pub struct Store<T> {
-    pub phi: Sheet<T>,
-    pub second: Option<Sheet<T>>,
+    sheets: Sheets<T>,
+    /// Numbers for each difference.
+    each: usize,
 }
 
 impl<T: Real> Memory<T> {
     fn new(rows: usize, width: usize, second_order: bool) -> Self {
-        let sheet = || Sheet::zeros(rows, width);
-        let store = || Store { phi: sheet(), second: second_order.then(sheet) };
-        Self { e: [store(), store()], h: [store(), store()] }
+        let each = if second_order { 2 } else { 1 };
+        Self { sheets: Sheets::zeros(4 * each, rows, width), each }
+    }
+
+    /// The first numbers of both components of E (0) or H (2): `n` nodes of a row from node `k` on.
+    #[inline(always)]
+    pub fn pair(&mut self, of: usize, row: usize, k: usize, n: usize) -> [&mut [T]; 2] {
+        let apart = self.each * self.sheets.apart();
+        let (_, rest) = self.sheets.split_mut(of * self.each, row, k);
+        let (first, second) = rest.split_at_mut(apart);
+        [&mut first[..n], &mut second[..n]]
+    }
+
+    /// Both numbers of one component, E of the first (0) or second (1), H (2, 3), in second order: `n` nodes of a row from
+    /// node `k` on.
+    #[inline(always)]
+    pub fn both(&mut self, of: usize, row: usize, k: usize, n: usize) -> [&mut [T]; 2] {
+        let apart = self.sheets.apart();
+        let (_, rest) = self.sheets.split_mut(of * self.each, row, k);
+        let (first, second) = rest.split_at_mut(apart);
+        [&mut first[..n], &mut second[..n]]
     }
 }
 
@@ -88,86 +100,82 @@ pub fn profiles<T: Real>(setup: &Setup3<'_>, axis: usize, index: usize) -> Optio
     Some(Profiles { first: std::array::from_fn(first), second })
 }
 
-/// The absorbing cells at one end of z: the same in every plane.
+/// The absorbing cells at both ends of z, in vectors of a row: the same in every plane.
 #[derive(Debug)]
 pub struct Columns<T> {
-    /// First node.
-    pub k: usize,
-    /// Nodes.
-    pub count: usize,
-    /// E of the first and second component, and H: `RA - 1`, `RB`, `RE`, `RF` at each node.
+    /// First node of each vector.
+    pub vectors: Vec<usize>,
+    /// E of the first and second component, and H: `RA - 1`, `RB`, `RE`, `RF` at each node, vector after vector.
     profiles: [[Vec<T>; 4]; 4],
     /// In second order: the nine coefficients of a filter at each node, likewise.
     filters: Option<[[Vec<T>; 9]; 4]>,
 }
 
 impl<T: Real> Columns<T> {
-    /// The ends that have absorbing cells. The counts are padded to whole vectors with nodes that absorb nothing.
-    pub fn both(setup: &Setup3<'_>) -> Vec<Self> {
+    /// The vectors that hold absorbing cells; their other nodes absorb nothing.
+    pub fn new(setup: &Setup3<'_>) -> Self {
         let nz = setup.painted.cells[2];
+        let (low, high): (&Slab, &Slab) = (&setup.slabs[2], &setup.slabs[5]);
+        let below = if low.cells > 0 { low.extent() } else { 0 };
+        let above = if high.cells > 0 { nz - high.cells } else { padded(nz) };
+        let vectors: Vec<usize> = (0..padded(nz)).step_by(LANES).filter(|&k| k < below || k + LANES > above).collect();
         let factors = factors(setup, 2);
-        let one = |low: bool| {
-            let slab: &Slab = &setup.slabs[if low { 2 } else { 5 }];
-            if slab.cells == 0 {
-                return None;
+        let nodes = || vectors.iter().flat_map(|&k| k..k + LANES);
+        // The slab that a node lies in, and how deep; none between the slabs and beyond the grid.
+        let within = |of: usize, node: usize| {
+            let z = node as f64 + if of < 2 { 0.0 } else { 0.5 };
+            let (in_low, in_high) = (low.cells as f64 - z, z - (nz - high.cells) as f64);
+            if low.cells > 0 && in_low >= 0.0 {
+                Some((low, in_low))
+            } else if high.cells > 0 && in_high >= 0.0 && node < nz {
+                Some((high, in_high))
+            } else {
+                None
             }
-            let extent = if low { slab.extent() } else { slab.cells };
-            let count = extent.next_multiple_of(LANES).min(nz);
-            let k = if low { 0 } else { nz - count };
-            let depth = |of: usize, node: usize| {
-                let z = node as f64 + if of < 2 { 0.0 } else { 0.5 };
-                if low { slab.cells as f64 - z } else { z - (nz - slab.cells) as f64 }
-            };
-            let filter = |of: usize| -> [Vec<T>; 9] {
-                let at = |node: usize| {
-                    let RowFilter { add, next: [one, two] } = scaled::<T>(slab.filter(depth(of, node)), factors[of]);
-                    [add, one, two]
-                };
-                std::array::from_fn(|c| (k..k + count).map(|node| at(node)[c / 3][c % 3]).collect())
-            };
-            let profile = |of: usize| -> [Vec<T>; 4] {
-                let at = |node: usize| {
-                    let [ra_less_one, rb, re, rf] = slab.at(depth(of, node));
-                    [factors[of] * ra_less_one, factors[of] * rb, re, rf]
-                };
-                std::array::from_fn(|c| (k..k + count).map(|node| T::of(at(node)[c])).collect())
-            };
-            let filters = slab.is_second_order().then(|| std::array::from_fn(filter));
-            Some(Self { k, count, profiles: std::array::from_fn(profile), filters })
         };
-        [true, false].into_iter().filter_map(one).collect()
+        let filter = |of: usize| -> [Vec<T>; 9] {
+            let at = |node: usize| {
+                let Some((slab, depth)) = within(of, node) else { return [[T::default(); 3]; 3] };
+                let RowFilter { add, next: [one, two] } = scaled::<T>(slab.filter(depth), factors[of]);
+                [add, one, two]
+            };
+            std::array::from_fn(|c| nodes().map(|node| at(node)[c / 3][c % 3]).collect())
+        };
+        let profile = |of: usize| -> [Vec<T>; 4] {
+            let at = |node: usize| {
+                let Some((slab, depth)) = within(of, node) else { return [0.0; 4] };
+                let [ra_less_one, rb, re, rf] = slab.at(depth);
+                [factors[of] * ra_less_one, factors[of] * rb, re, rf]
+            };
+            std::array::from_fn(|c| nodes().map(|node| T::of(at(node)[c])).collect())
+        };
+        let second_order = low.is_second_order() || high.is_second_order();
+        let filters = second_order.then(|| std::array::from_fn(filter));
+        Self { profiles: std::array::from_fn(profile), filters, vectors }
     }
 
-    /// The profile of E of the first (0) or second (1) component, or of H (2, 3), from a node of the end on.
+    /// The profile of E of the first (0) or second (1) component, or of H (2, 3), in vector `place`.
     #[inline(always)]
-    pub fn profile(&self, of: usize, from: usize) -> ColumnProfile<'_, T> {
+    pub fn profile(&self, of: usize, place: usize) -> ColumnProfile<'_, T> {
+        let from = place * LANES;
         let [ra_less_one, rb, re, rf] = &self.profiles[of];
         ColumnProfile { ra_less_one: &ra_less_one[from..], rb: &rb[from..], re: &re[from..], rf: &rf[from..] }
+    }
+
+    /// The filter of E of the first (0) or second (1) component, or of H (2, 3), in second order, in vector `place`.
+    #[inline(always)]
+    pub fn filter(&self, of: usize, place: usize) -> Option<ColumnFilter<'_, T>> {
+        let filters = &self.filters.as_ref()?[of];
+        let part = |c: usize| &filters[c][place * LANES..];
+        let next = [[part(3), part(4), part(5)], [part(6), part(7), part(8)]];
+        Some(ColumnFilter { add: [part(0), part(1), part(2)], next })
     }
 }
 
 impl<T: Real> State for Memory<T> {
     fn visit(&mut self, visitor: &mut dyn FnMut(Numbers<'_>)) {
-        let Self { e, h } = self;
-        e.visit(visitor);
-        h.visit(visitor);
-    }
-}
-
-impl<T: Real> State for Store<T> {
-    fn visit(&mut self, visitor: &mut dyn FnMut(Numbers<'_>)) {
-        let Self { phi, second } = self;
-        phi.visit(visitor);
-        second.visit(visitor);
-    }
-}
-
-impl<T> Columns<T> {
-    /// The filter of E of the first (0) or second (1) component, or of H (2, 3), in second order, from node `from` of the slab on.
-    #[inline(always)]
-    pub fn filter(&self, of: usize, from: usize) -> Option<ColumnFilter<'_, T>> {
-        let [a0, a1, a2, n0, n1, n2, n3, n4, n5] = self.filters.as_ref()?[of].each_ref().map(|part| &part[from..]);
-        Some(ColumnFilter { add: [a0, a1, a2], next: [[n0, n1, n2], [n3, n4, n5]] })
+        let Self { sheets, each: _ } = self;
+        sheets.visit(visitor);
     }
 }
 
@@ -178,8 +186,8 @@ pub struct Absorbing<T> {
     pub x: Option<(Profiles<T>, Memory<T>)>,
     /// Rows of the slabs across y, one after the other.
     pub y: Option<Memory<T>>,
-    /// At each end of z.
-    pub z: Vec<Memory<T>>,
+    /// At the ends of z, vector after vector.
+    pub z: Option<Memory<T>>,
 }
 
 impl<T: Real> State for Absorbing<T> {
@@ -195,14 +203,14 @@ impl<T: Real> State for Absorbing<T> {
 
 impl<T: Real> Absorbing<T> {
     /// Allocates what plane `i` needs.
-    pub fn new(setup: &Setup3<'_>, i: usize, width: usize, columns: &[Columns<T>]) -> Self {
+    pub fn new(setup: &Setup3<'_>, i: usize, width: usize, columns: &Columns<T>) -> Self {
         let [_, ny, _] = setup.painted.cells;
         let rows = setup.slabs[1].extent() + setup.slabs[4].cells;
-        let second = setup.slabs.iter().any(Slab::is_second_order);
+        let (second, ends) = (setup.slabs.iter().any(Slab::is_second_order), columns.vectors.len() * LANES);
         Self {
             x: profiles(setup, 0, i).map(|profiles| (profiles, Memory::new(ny - 1, width, second))),
             y: (rows > 0).then(|| Memory::new(rows - 1, width, second)),
-            z: columns.iter().map(|c| Memory::new(ny - 1, c.count.next_multiple_of(LANES), second)).collect(),
+            z: (ends > 0).then(|| Memory::new(ny - 1, ends, second)),
         }
     }
 
@@ -211,13 +219,14 @@ impl<T: Real> Absorbing<T> {
         let [nx, ny, nz] = setup.painted.cells;
         let mut cells = setup.slabs.each_ref().map(Slab::extent);
         (3..6).for_each(|side| cells[side] = setup.slabs[side].cells);
-        let numbers = if setup.slabs.iter().any(Slab::is_second_order) { 2 } else { 1 };
-        let of_x = (cells[0] + cells[3]) as u64 * 4 * Sheet::<T>::bytes(ny - 1, width);
+        let each = if setup.slabs.iter().any(Slab::is_second_order) { 2 } else { 1 };
+        let memory = |rows: usize, width: usize| Sheets::<T>::bytes(4 * each, rows - 1, width);
+        let of_x = (cells[0] + cells[3]) as u64 * memory(ny, width);
         let rows = cells[1] + cells[4];
-        let of_y = if rows > 0 { nx as u64 * 4 * Sheet::<T>::bytes(rows - 1, width) } else { 0 };
-        let column =
-            |count: usize| Sheet::<T>::bytes(ny - 1, count.next_multiple_of(LANES).min(nz.next_multiple_of(LANES)));
-        let of_z: u64 = [cells[2], cells[5]].into_iter().filter(|&count| count > 0).map(column).sum();
-        numbers * (of_x + of_y + nx as u64 * 4 * of_z)
+        let of_y = if rows > 0 { nx as u64 * memory(rows, width) } else { 0 };
+        let below = if cells[2] > 0 { cells[2].next_multiple_of(LANES).min(width) } else { 0 };
+        let above = if cells[5] > 0 { width - ((nz - cells[5]) / LANES * LANES).max(below).min(width) } else { 0 };
+        let of_z = if below + above > 0 { memory(ny, below + above) } else { 0 };
+        of_x + of_y + nx as u64 * of_z
     }
 }

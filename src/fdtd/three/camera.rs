@@ -2,10 +2,10 @@
 
 use super::super::FdtdError;
 use super::super::keeping::Snapshots;
-use super::instructions::Number;
 use super::plane::Plane;
 use super::setup::Setup3;
 use super::turn::Turn;
+use super::vector::Number;
 use crate::model::{Model, SnapshotCells, SnapshotError};
 use crate::trace::{FieldSnapshot, FieldValues};
 use crate::units::{Metres, Seconds};

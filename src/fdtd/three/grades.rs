@@ -1,9 +1,10 @@
 //! The coefficients on the edges of a plane: looked up in a small table, or stored where a table would be too large.
 
-use super::super::instructions::InstructionSet;
-use super::instructions::{Number, TABLE};
+use super::kernel::{Even, Indexed, Stored, WriteOut};
+use super::plane::Shared;
 use super::setup::Setup3;
-use super::sheet::{LANES, Sheet, padded};
+use super::sheet::{Sheets, padded};
+use super::vector::{Number, Set, TABLE};
 
 /// No single entry: the edges of the row differ.
 const MIXED: u8 = u8::MAX;
@@ -12,8 +13,6 @@ const MIXED: u8 = u8::MAX;
 pub struct Table<T> {
     ca: [T; TABLE],
     cb: [[T; TABLE]; 3],
-    /// Fewer than 16 entries.
-    few: bool,
 }
 
 impl<T: Number> Table<T> {
@@ -28,7 +27,6 @@ impl<T: Number> Table<T> {
         Some(Self {
             ca: std::array::from_fn(|entry| T::of(of(0, entry)[0])),
             cb: std::array::from_fn(|axis| std::array::from_fn(|entry| T::of(of(axis, entry)[1]))),
-            few: setup.edges.len() <= 16,
         })
     }
 }
@@ -43,13 +41,15 @@ pub enum Grades<T> {
         rows: [Vec<RowIndex>; 3],
         /// Whether any edge of a row conducts.
         lossy: Vec<bool>,
+        /// Nodes of a row.
+        width: usize,
     },
     /// One number an edge.
     Stored {
-        /// Absent where nothing in the plane conducts.
-        ca: Option<Box<[Sheet<T>; 3]>>,
+        /// Along x, y, z; absent where nothing in the plane conducts.
+        ca: Option<Sheets<T>>,
         /// What takes the curl.
-        cb: Box<[Sheet<T>; 3]>,
+        cb: Sheets<T>,
         /// Whether any edge of a row conducts.
         lossy: Vec<bool>,
     },
@@ -75,30 +75,6 @@ fn conducts(setup: &Setup3<'_>, i: usize, j: usize) -> bool {
     (0..3).any(|axis| entries(setup, axis, i, j).any(|entry| setup.edges[entry].is_lossy()))
 }
 
-/// The coefficients of one row, x, y and z edges.
-pub struct RowGrades<'a, T> {
-    /// `None` where nothing in the row conducts.
-    pub ca: Option<[&'a [T]; 3]>,
-    /// What takes the curl.
-    pub cb: [&'a [T]; 3],
-}
-
-/// Room for looked-up rows.
-pub struct Lookup<T> {
-    ca: [Vec<T>; 3],
-    cb: [Vec<T>; 3],
-    /// The entry that a row is filled with, `ca` and `cb`.
-    holds: [[u8; 2]; 3],
-}
-
-impl<T: Number> Lookup<T> {
-    /// Room for rows of `width` nodes.
-    pub fn new(width: usize) -> Self {
-        let rows = || std::array::from_fn(|_| vec![T::default(); width]);
-        Self { ca: rows(), cb: rows(), holds: [[MIXED; 2]; 3] }
-    }
-}
-
 impl<T: Number> Grades<T> {
     /// Reads the edges of plane `i`.
     pub fn new(setup: &Setup3<'_>, i: usize, indexed: bool) -> Self {
@@ -106,15 +82,15 @@ impl<T: Number> Grades<T> {
         let width = padded(nz);
         let lossy: Vec<bool> = (0..ny).map(|j| setup.lossy() && conducts(setup, i, j)).collect();
         if !indexed {
-            let mut cb = Box::new(std::array::from_fn(|_| Sheet::zeros(ny - 1, width)));
+            let mut cb = Sheets::zeros(3, ny - 1, width);
             let mut ca = lossy.contains(&true).then(|| cb.clone());
             for j in 0..ny {
                 for axis in 0..3 {
                     for (k, entry) in entries(setup, axis, i, j).enumerate() {
                         let [a, b] = setup.coefficients(axis, entry);
-                        cb[axis].at_mut(j, k, 1)[0] = T::of(b);
+                        cb.at_mut(axis, j, k, 1)[0] = T::of(b);
                         if let Some(ca) = &mut ca {
-                            ca[axis].at_mut(j, k, 1)[0] = T::of(a);
+                            ca.at_mut(axis, j, k, 1)[0] = T::of(a);
                         }
                     }
                 }
@@ -135,13 +111,13 @@ impl<T: Number> Grades<T> {
             }
             index.shrink_to_fit();
         }
-        Self::Indexed { index, rows, lossy }
+        Self::Indexed { index, rows, lossy, width }
     }
 
     /// Memory of all planes, bytes.
     pub fn bytes(setup: &Setup3<'_>) -> u64 {
         let [nx, ny, nz] = setup.painted.cells;
-        let (width, sheets) = (padded(nz), 3 * Sheet::<T>::bytes(ny - 1, padded(nz)));
+        let (width, sheets) = (padded(nz), Sheets::<T>::bytes(3, ny - 1, padded(nz)));
         let of_plane = |i: usize| -> u64 {
             if setup.edges.len() > TABLE {
                 let lossy = setup.lossy() && (0..ny).any(|j| conducts(setup, i, j));
@@ -158,65 +134,57 @@ impl<T: Number> Grades<T> {
         (0..nx).map(|i| of_plane(i) + ny as u64).sum()
     }
 
-    /// The coefficients of `n` nodes of row `j` from node `k` on, whole vectors, for the components that are active.
+    /// Whether any edge of row `j` conducts.
     #[inline(always)]
-    pub fn row<'a>(
-        &'a self,
-        set: InstructionSet,
-        table: Option<&Table<T>>,
-        j: usize,
-        (k, n): (usize, usize),
-        active: [bool; 3],
-        lookup: &'a mut Lookup<T>,
-    ) -> RowGrades<'a, T> {
-        let width = lookup.cb[0].len();
-        match (self, table) {
-            (Self::Indexed { index, rows, lossy }, Some(table)) => {
-                let lossy = lossy[j];
-                for axis in (0..3).filter(|&axis| active[axis]) {
-                    let row = rows[axis][j];
-                    let mixed = row.whole == MIXED;
-                    let index = if mixed { &index[axis][row.place as usize * width + k..][..n] } else { &[] };
-                    let Lookup { ca, cb, holds } = &mut *lookup;
-                    let [holds_ca, holds_cb] = &mut holds[axis];
-                    fill(set, &table.cb[axis], table.few, row.whole, index, k, &mut cb[axis], holds_cb);
-                    if lossy {
-                        fill(set, &table.ca, table.few, row.whole, index, k, &mut ca[axis], holds_ca);
-                    }
+    pub fn is_lossy(&self, j: usize) -> bool {
+        match self {
+            Self::Indexed { lossy, .. } | Self::Stored { lossy, .. } => lossy[j],
+        }
+    }
+
+    /// The coefficients of `n` edges along an axis of row `j` from node `k` on.
+    #[inline(always)]
+    pub fn of<'a>(&'a self, shared: &'a Shared<T>, axis: usize, (j, k, n): (usize, usize, usize)) -> RowGrade<'a, T> {
+        match (self, &shared.table) {
+            (Self::Indexed { index, rows, width, .. }, Some(table)) => {
+                let RowIndex { whole, place } = rows[axis][j];
+                let (ca, cb) = (&table.ca, &table.cb[axis]);
+                if whole != MIXED {
+                    return RowGrade::Even([ca, cb].map(|table| Even(table[usize::from(whole) % TABLE])));
                 }
-                let part = |[x, y, z]: &'a [Vec<T>; 3]| [&x[k..][..n], &y[k..][..n], &z[k..][..n]];
-                RowGrades { ca: lossy.then_some(part(&lookup.ca)), cb: part(&lookup.cb) }
+                let index = &index[axis][place as usize * width + k..][..n];
+                RowGrade::Indexed([Indexed { table: ca, index }, Indexed { table: cb, index }])
             }
-            (Self::Stored { ca, cb, lossy }, _) => {
-                let row = |[x, y, z]: &'a [Sheet<T>; 3]| [x.at(j, k, n), y.at(j, k, n), z.at(j, k, n)];
-                RowGrades { ca: ca.as_deref().filter(|_| lossy[j]).map(row), cb: row(cb) }
+            (Self::Stored { ca, cb, .. }, _) => {
+                let cb = cb.at(axis, j, k, n);
+                let ca = ca.as_ref().map_or(&shared.ones[..n], |ca| ca.at(axis, j, k, n));
+                RowGrade::Stored([Stored(ca), Stored(cb)])
             }
-            (Self::Indexed { .. }, None) => {
-                let [bx, by, bz] = &lookup.cb;
-                RowGrades { ca: None, cb: [bx, by, bz] }
-            }
+            (Self::Indexed { .. }, None) => RowGrade::Even([Even(T::default()); 2]),
         }
     }
 }
 
-/// Fills a row unless it holds the wanted entry already, a mixed one as far as `index` goes from node `k` on.
-#[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "split off only so that both tables are filled alike")]
-fn fill<T: Number>(
-    set: InstructionSet,
-    table: &[T; TABLE],
-    few: bool,
-    entry: u8,
-    index: &[u8],
-    k: usize,
-    row: &mut [T],
-    holds: &mut u8,
-) {
-    debug_assert_eq!(row.len() % LANES, 0);
-    if entry == MIXED {
-        T::look_up(set, table, few, index, &mut row[k..][..index.len()]);
-    } else if *holds != entry {
-        row.fill(table[usize::from(entry) % TABLE]);
+/// `ca` and `cb` along a row of edges.
+#[derive(Clone, Copy)]
+pub enum RowGrade<'a, T> {
+    /// The same everywhere.
+    Even([Even<T>; 2]),
+    /// Looked up.
+    Indexed([Indexed<'a, T>; 2]),
+    /// One number an edge.
+    Stored([Stored<'a, T>; 2]),
+}
+
+impl<'a, T: Number> RowGrade<'a, T> {
+    /// `cb` of each edge, written out to `room` where it is not at hand.
+    #[inline(always)]
+    pub fn scale<S: Set<T>>(self, set: S, room: &'a mut [T]) -> &'a [T] {
+        match self {
+            Self::Even([_, coefficient]) => set.run(WriteOut { coefficient, out: &mut *room }),
+            Self::Indexed([_, coefficient]) => set.run(WriteOut { coefficient, out: &mut *room }),
+            Self::Stored([_, Stored(cb)]) => return cb,
+        }
+        room
     }
-    *holds = entry;
 }

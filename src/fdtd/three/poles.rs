@@ -4,8 +4,9 @@ use super::super::coefficients::Edge;
 use super::super::dispersion::overlap;
 use super::super::real::Real;
 use super::super::state::{Numbers, State};
-use super::kernel::{Pole, Ringing, relax};
+use super::kernel::{Pole, Relax, Ringing};
 use super::setup::Setup3;
+use super::vector::Set;
 
 /// The dispersive edges of a plane.
 pub struct Dispersion<T> {
@@ -87,14 +88,22 @@ impl<T: Real> Dispersion<T> {
 
     /// Relaxes the dispersive edges of a row; `e` begins at node `begin`.
     #[inline(always)]
-    pub fn relax_row(&mut self, j: usize, begin: usize, e: [&mut [T]; 3], old: &[Vec<T>; 3], poles: &Poles<T>) {
+    pub fn relax_row<S: Set<T>>(
+        &mut self,
+        set: S,
+        j: usize,
+        begin: usize,
+        e: [&mut [T]; 3],
+        old: &[Vec<T>; 3],
+        poles: &Poles<T>,
+    ) {
         for run in &self.runs[self.of_row[j] as usize..self.of_row[j + 1] as usize] {
             let e = &mut *e[run.axis];
             let Some((k, count)) = overlap(run.k, run.count, begin, e.len()) else { continue };
             let (relaxing, ringing) = &poles[run.entry];
             let memory = &mut self.memory[run.place..][..run.count * (relaxing.len() + 2 * ringing.len())];
             let (e, old) = (&mut e[k - begin..][..count], &old[run.axis][k..][..count]);
-            relax(e, old, memory, (run.count, k - run.k), relaxing, ringing);
+            set.run(Relax { e, e_old: old, memory, each: run.count, from: k - run.k, poles: relaxing, ringing });
         }
     }
 }

@@ -10,14 +10,15 @@ use super::super::predict::{Prediction, TimeShares};
 use super::super::{Fdtd, FdtdError, Precision, Stats};
 use super::absorbing::Absorbing;
 use super::camera::{Camera, Look};
+use super::fields::Fields;
 use super::grades::Grades;
-use super::instructions::Number;
 use super::plane::{Probe, Shared};
 use super::reach::Cones;
 use super::setup::{Setup3, check_model};
-use super::sheet::{Sheet, padded};
+use super::sheet::{Sheets, padded};
 use super::team;
 use super::turn::Turn;
+use super::vector::Number;
 use crate::forward::OnProgress;
 use crate::model::{Grid, Model, Painted3, Resolution, TimeWindow, available_memory, check_memory, paint3};
 use crate::trace::{AScan, Component, ReceiverTraces, Traces};
@@ -131,8 +132,8 @@ impl Fdtd {
         let bytes = bytes_needed(&setup, self.precision);
         check_memory(bytes, available_memory())?;
         let (probes, mut stats) = match self.precision {
-            Precision::Single => self.run_three::<f32>(model, &mut setup, manner, on_progress)?,
-            Precision::Double => self.run_three::<f64>(model, &mut setup, manner, on_progress)?,
+            Precision::Single => self.run_three::<f32>(model, &mut setup, bytes, manner, on_progress)?,
+            Precision::Double => self.run_three::<f64>(model, &mut setup, bytes, manner, on_progress)?,
         };
         stats.bytes = bytes;
         Ok((traces(self.precision, model, &setup, probes), stats))
@@ -142,6 +143,7 @@ impl Fdtd {
         &self,
         model: &Model,
         setup: &mut Setup3<'_>,
+        bytes: u64,
         manner: Manner<'_>,
         on_progress: OnProgress<'_>,
     ) -> Result<(Vec<Probe>, Stats), FdtdError> {
@@ -150,11 +152,12 @@ impl Fdtd {
         let wanted = asked.or_else(|| std::thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
         let threads = team::worthwhile_threads(model.grid.cell_count(), model.grid.cells[0], wanted);
         let shared = Shared::<T>::new(setup, instruction_set, manner.skip);
+        let share = team::Share { threads, height: team::tile_height(model.grid.cells, bytes) };
         let planes = team::planes(setup, &shared);
         let Keeping { checkpoints, snapshots } = manner.keeping;
         let mut keeper = checkpoints.map(|checkpoints| Keeper::new(checkpoints, model, self.precision));
         let mut camera = snapshots.map(|snapshots| Camera::new(*snapshots, setup, manner.turn));
-        let (probes, wall) = team::run(setup, &shared, planes, threads, keeper.as_mut(), camera.as_mut(), on_progress)?;
+        let (probes, wall) = team::run(setup, &shared, planes, share, keeper.as_mut(), camera.as_mut(), on_progress)?;
         let cell_steps = model.grid.cell_count() as u64 * setup.iterations as u64;
         let wall = Seconds(wall.as_secs_f64());
         Ok((probes, Stats { wall, cell_steps, bytes: 0, threads, instruction_set }))
@@ -216,8 +219,8 @@ pub fn bytes_needed(setup: &Setup3<'_>, precision: Precision) -> u64 {
 fn bytes<T: Number>(setup: &Setup3<'_>) -> u64 {
     let [nx, ny, nz] = setup.painted.cells;
     let width = padded(nz);
-    let fields = 6 * (nx as u64 + 2) * Sheet::<T>::bytes(ny, width);
-    let magnetic = if setup.magnetic() { 6 * nx as u64 * Sheet::<T>::bytes(ny - 1, width) } else { 0 };
+    let fields = (nx as u64 + 2) * Fields::<T>::bytes(ny, width);
+    let magnetic = if setup.magnetic() { nx as u64 * Sheets::<T>::bytes(6, ny - 1, width) } else { 0 };
     let per_entry = setup.painted.edges_per_entry();
     let poles: usize = setup.edges.iter().zip(per_entry).map(|(edge, count)| edge.memories() * count).sum();
     let samples = setup.receivers.len() * 6 * 8 + setup.drives.len() * (8 + size_of::<T>());

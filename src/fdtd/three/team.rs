@@ -1,12 +1,17 @@
-//! The threads of a run: passes of several steps that follow one another through the grid.
+//! The threads of a run: passes of several steps that follow one another through the grid, tile by tile.
 //!
 //! A pass takes [`STAGES`] steps: its front moves along x plane by plane, and behind it plane `p - s` is taken through the
 //! pass's step `s`, so that a plane is read from memory once for several steps. H of a plane needs E of the next one, and
-//! E needs H of the one before: both are as they should be, in place. Thread `t` runs the passes `t, t + threads, …`; a pass
-//! waits until the one before has left the planes that its front is about to touch. A plane is stepped by the same
-//! operations in the same order whoever does it, so the bits do not depend on the number of threads.
+//! E needs H of the one before: both are as they should be, in place. So that the planes at work fit into a core's own cache,
+//! a pass takes them in [`Tiles`] of some rows, one after the other; a tile lies one row lower in each step of its pass, for
+//! the same reason.
+//!
+//! The tiles of all passes make one line. Thread `t` takes the items `t, t + threads, …` of it; each waits until the one before
+//! has left the planes that its front is about to touch. A plane is stepped by the same operations in the same order whoever
+//! does it, so the bits depend neither on the number of threads nor on the height of the tiles.
 
 use std::num::NonZeroUsize;
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 use std::time::{Duration, Instant};
@@ -15,13 +20,17 @@ use super::super::FdtdError;
 use super::super::checkpoint::Keeper;
 use super::super::state::{Numbers, State};
 use super::camera::Camera;
-use super::instructions::{Number, step};
-use super::plane::{Plane, Probe, Scratch, Shared, Step};
+use super::instructions::step;
+use super::plane::{Plane, Probe, Scratch, Shared};
 use super::setup::{Setup3, axis_of};
+use super::step::Step;
+use super::vector::Number;
 use crate::forward::{OnProgress, Progress};
 
-/// Steps of a pass: the planes of five steps and their neighbours fit into an outer cache of 32 MB up to 200 x 200 cells.
+/// Steps of a pass.
 pub const STAGES: usize = 4;
+/// Bytes of a core's own cache that a pass may count on, of the megabyte that most have.
+const OWN_CACHE: u64 = 750_000;
 /// Steps between two looks at the whole field.
 const STEPS_BETWEEN_SCANS: usize = 256;
 /// Time between two calls of `on_progress`.
@@ -35,12 +44,39 @@ const LEAST_CELLS_PER_THREAD: usize = 8_192;
 #[repr(align(128))]
 struct Done(AtomicUsize);
 
+/// How the rows of a plane are cut: tile `t` is taken through its pass's step `s` from row `t height - s` on, because H needs
+/// E of the next row and E needs H of the one before.
+#[derive(Debug, Clone, Copy)]
+struct Tiles {
+    height: usize,
+    count: usize,
+    /// Rows of a plane.
+    rows: usize,
+}
+
+impl Tiles {
+    /// Tiles of about `height` rows; all of one height, but for the last.
+    fn new(rows: usize, height: usize) -> Self {
+        let height = height.max(STAGES + 1);
+        let count = (rows + STAGES - 1).div_ceil(height);
+        Self { height: (rows + STAGES - 1).div_ceil(count).max(STAGES + 1), count, rows }
+    }
+
+    /// The rows of a tile in a step of its pass.
+    fn rows(&self, tile: usize, stage: usize) -> Range<usize> {
+        let at = |row: usize| row.saturating_sub(stage).min(self.rows);
+        at(tile * self.height)..at((tile + 1) * self.height)
+    }
+}
+
 struct Team<'a, T> {
     setup: &'a Setup3<'a>,
     shared: &'a Shared<T>,
     /// Plane `i` is number `i + 1`; the first and the last lie beyond the outer walls.
     planes: Vec<RwLock<Plane<T>>>,
     done: Vec<Done>,
+    /// How the rows of a plane are cut.
+    tiles: Tiles,
     /// Steps made when the passes begin.
     begun: usize,
     /// Steps made when they end, at the latest.
@@ -50,6 +86,20 @@ struct Team<'a, T> {
     halt: AtomicBool,
     failure: Mutex<Option<FdtdError>>,
     limit: T,
+}
+
+/// How a run is shared out.
+#[derive(Debug, Clone, Copy)]
+pub struct Share {
+    pub threads: usize,
+    /// About how many rows a tile has.
+    pub height: usize,
+}
+
+/// The height of tiles at which what a pass works on fits into a core's own cache; all planes together take `bytes`.
+pub fn tile_height(cells: [usize; 3], bytes: u64) -> usize {
+    let per_row = bytes / (cells[0] * cells[1]).max(1) as u64;
+    (OWN_CACHE / ((STAGES as u64 + 2) * per_row.max(1))) as usize
 }
 
 /// How many threads a grid is worth, given how many are wanted.
@@ -86,7 +136,7 @@ pub fn run<T: Number>(
     setup: &Setup3<'_>,
     shared: &Shared<T>,
     mut planes: Vec<Plane<T>>,
-    threads: usize,
+    Share { threads, height }: Share,
     mut keeper: Option<&mut Keeper<'_>>,
     mut camera: Option<&mut Camera<'_>>,
     on_progress: OnProgress<'_>,
@@ -97,6 +147,7 @@ pub fn run<T: Number>(
         shared,
         planes: planes.into_iter().map(RwLock::new).collect(),
         done: (0..threads).map(|_| Done(AtomicUsize::new(0))).collect(),
+        tiles: Tiles::new(setup.painted.cells[1], height),
         begun: loaded.unwrap_or(0),
         until: setup.iterations,
         end: AtomicUsize::new(usize::MAX),
@@ -202,31 +253,36 @@ impl<T: Number> Team<'_, T> {
     fn passes(&self, me: usize, tick: &mut dyn FnMut(usize) -> Tick) {
         let _guard = HaltOnPanic(&self.halt);
         let mut scratch = Scratch::new(self.shared);
-        let (nx, steps) = (self.setup.painted.cells[0], self.until);
-        // Positions of a pass's front until its last stage has left the grid.
+        let (nx, steps, tiles) = (self.setup.painted.cells[0], self.until, self.tiles);
+        // Positions of a tile's front until its last stage has left the grid.
         let positions = nx + STAGES - 1;
-        for pass in (me..(steps - self.begun).div_ceil(STAGES)).step_by(self.done.len()) {
+        let items = (steps - self.begun).div_ceil(STAGES) * tiles.count;
+        for item in (me..items).step_by(self.done.len()) {
+            let (pass, tile) = (item / tiles.count, item % tiles.count);
             if pass >= self.end.load(Ordering::Relaxed) {
                 return;
             }
             let first = self.begun + pass * STAGES;
             match tick(first) {
                 Tick::Go => {}
-                // Nobody has begun a later pass: it would have to wait for this one.
-                Tick::Pause => self.end.store(pass + self.done.len(), Ordering::Relaxed),
+                // Nobody has begun an item later by as many as there are threads: it would have to wait for this one.
+                Tick::Pause => {
+                    let end = (item + self.done.len()).div_ceil(tiles.count);
+                    let _ = self.end.compare_exchange(usize::MAX, end, Ordering::Relaxed, Ordering::Relaxed);
+                }
                 Tick::Stop => self.fail(FdtdError::Stopped),
             }
             for front in 0..positions {
-                let needed = pass.saturating_sub(1) * positions + (front + STAGES + 1).min(positions);
-                if pass > 0 && !self.wait((pass - 1) % self.done.len(), needed) {
+                let needed = item.saturating_sub(1) * positions + (front + STAGES + 1).min(positions);
+                if item > 0 && !self.wait((item - 1) % self.done.len(), needed) {
                     return;
                 }
                 for stage in 0..STAGES.min(steps - first) {
                     if let Some(i) = front.checked_sub(stage).filter(|&i| i < nx) {
-                        self.step_plane(i, first + stage, &mut scratch);
+                        self.step_plane(i, tiles.rows(tile, stage), first + stage, &mut scratch);
                     }
                 }
-                self.done[me].0.store(pass * positions + front + 1, Ordering::Release);
+                self.done[me].0.store(item * positions + front + 1, Ordering::Release);
                 if self.halt.load(Ordering::Relaxed) {
                     return;
                 }
@@ -234,22 +290,23 @@ impl<T: Number> Team<'_, T> {
         }
     }
 
-    /// Records what the receivers of a plane hold before a step, and takes the step unless it is the last.
-    fn step_plane(&self, i: usize, number: usize, scratch: &mut Scratch<T>) {
+    /// Records what the receivers in some rows of a plane hold before a step, and takes the step unless it is the last.
+    fn step_plane(&self, i: usize, rows: Range<usize>, number: usize, scratch: &mut Scratch<T>) {
         let mut plane = write(&self.planes[i + 1]);
-        let (mut found, last) = (plane.record(number, self.limit), number + 1 == self.setup.iterations);
+        let (mut found, last) = (plane.record(number, &rows, self.limit), number + 1 == self.setup.iterations);
         if !last && self.shared.cones.touches(i, number) {
             let (west, east) = (read(&self.planes[i]), read(&self.planes[i + 2]));
-            let action = Step { shared: self.shared, step: number, west: &west, east: &east };
+            let rows = rows.clone();
+            let action = Step { shared: self.shared, step: number, rows, west: &west, east: &east };
             step(self.shared.set(), &action, &mut plane, scratch);
         }
         if last || number % STEPS_BETWEEN_SCANS == STEPS_BETWEEN_SCANS - 1 {
-            found = found.or_else(|| plane.find_beyond(self.shared, self.limit));
+            found = found.or_else(|| plane.find_beyond(self.shared, &rows, self.limit));
         }
         if let Some((axis, [j, k])) = found {
             let node = [i, j, k];
             let d = self.setup.spacing;
-            let value = plane.e[axis].at(j, k, 1)[0].double() / d[axis];
+            let value = plane.fields.at(axis, j, k, 1)[0].double() / d[axis];
             let position = std::array::from_fn(|axis| node[axis] as f64 * d[axis]);
             self.fail(FdtdError::DivergedAt { step: number, axis: axis_of(axis), node, position, value });
         }
@@ -378,13 +435,15 @@ mod tests {
     #[derive(Debug, Clone, Copy)]
     struct Order {
         threads: usize,
+        /// About how many rows a tile has.
+        height: usize,
         skip: bool,
         /// Nodes by which the light cones are made too narrow.
         narrower: i32,
         set: InstructionSet,
     }
 
-    const PLAIN: Order = Order { threads: 1, skip: false, narrower: 0, set: InstructionSet::Scalar };
+    const PLAIN: Order = Order { threads: 1, height: 1000, skip: false, narrower: 0, set: InstructionSet::Scalar };
 
     fn go<T: Number>(model: &Model, order: Order) -> Result<Vec<u64>, FdtdError> {
         let painted = paint3(model).map_err(FdtdError::from)?;
@@ -393,9 +452,25 @@ mod tests {
         let mut shared = Shared::<T>::new(&setup, set, order.skip);
         shared.cones.narrow(order.narrower);
         let planes = planes(&mut setup, &shared);
-        let (mut probes, _) = run(&setup, &shared, planes, order.threads, None, None, &|_| ControlFlow::Continue(()))?;
+        let (mut probes, _) =
+            run(&setup, &shared, planes, Share { threads: order.threads, height: order.height }, None, None, &|_| {
+                ControlFlow::Continue(())
+            })?;
         probes.sort_by_key(|probe| probe.receiver);
         Ok(probes.into_iter().flat_map(|probe| probe.samples).flatten().map(f64::to_bits).collect())
+    }
+
+    proptest! {
+        /// In every step of a pass the tiles take each row once, and none is too low for its neighbours.
+        #[test]
+        fn tiles_take_every_row_once(rows in 1usize..400, height in 0usize..60) {
+            let tiles = Tiles::new(rows, height);
+            for stage in 0..STAGES {
+                let taken: Vec<usize> = (0..tiles.count).flat_map(|tile| tiles.rows(tile, stage)).collect();
+                prop_assert_eq!(taken, (0..rows).collect::<Vec<_>>());
+            }
+            prop_assert!(tiles.height > STAGES);
+        }
     }
 
     proptest! {
@@ -404,10 +479,10 @@ mod tests {
         /// Threads, instructions and what is left out change no bit of any sample, in either precision.
         #[test]
         fn no_order_of_steps_changes_a_bit(
-            model in any_model(), threads in 1usize..5, skip in any::<bool>(),
+            model in any_model(), threads in 1usize..5, height in 1usize..20, skip in any::<bool>(),
             set in prop::sample::select(vec![InstructionSet::Scalar, InstructionSet::Avx2, InstructionSet::Avx512]),
         ) {
-            let order = Order { threads, skip, set, ..PLAIN };
+            let order = Order { threads, height, skip, set, ..PLAIN };
             match go::<f32>(&model, PLAIN) {
                 Ok(plain) => prop_assert_eq!(plain, go::<f32>(&model, order).unwrap()),
                 // A source on a wall or in a conductor, or a grid of one row.

@@ -1,10 +1,10 @@
-//! The absorbing boundary: HORIPML or MRIPML as corrections added to a row after its plain step.
-//!
-//! With `d = b - a` the difference of the plain step, the field gains `scale [(RA - 1) d + RB phi]`, then
-//! `phi <- RE phi - RF d` (Giannopoulos 2012, doi:10.1109/TAP.2011.2180344, first order). The sign of the difference in the
-//! curl, and the ratio of non-cubic cells, stand in `RA - 1` and `RB`.
+//! The absorbing boundary as corrections added to a row after its plain step: at the ends of z, and in second order; see
+//! `update` for the formula and for the rows across x and y.
 
 use super::super::super::real::Real;
+use super::super::sheet::LANES;
+use super::super::vector::{Kernel, Set, vectors, vectors_mut};
+use super::grade::Grade;
 
 /// The four coefficients of a row that lies within the absorbing cells at an end of x or y.
 #[derive(Debug, Clone, Copy)]
@@ -32,59 +32,45 @@ pub struct ColumnProfile<'a, T> {
     pub rf: &'a [T],
 }
 
-/// Corrects a row of H in a material that is not magnetic.
-#[inline(always)]
-pub fn absorb_row<T: Real>(field: &mut [T], [a, b]: [&[T]; 2], phi: &mut [T], p: RowProfile<T>) {
-    let n = field.len();
-    let (a, b, phi) = (&a[..n], &b[..n], &mut phi[..n]);
-    for k in 0..n {
-        let d = b[k] - a[k];
-        field[k] = field[k] + (p.ra_less_one * d + p.rb * phi[k]);
-        phi[k] = p.re * phi[k] - p.rf * d;
-    }
+/// Corrects vectors at the ends of a row.
+pub struct AbsorbEnds<'a, T, G> {
+    /// The component.
+    pub field: &'a mut [T],
+    /// The difference, `d[1] - d[0]`.
+    pub d: [&'a [T]; 2],
+    /// The coefficients of the row.
+    pub grade: G,
+    /// One number a node of the ends, vector after vector.
+    pub phi: &'a mut [T],
+    /// The coefficients at these nodes.
+    pub profile: ColumnProfile<'a, T>,
+    /// First node of each of these vectors.
+    pub vectors: &'a [usize],
+    /// First node of the row.
+    pub begin: usize,
 }
 
-/// Corrects a row of E, or of H in a magnetic material.
-#[inline(always)]
-pub fn absorb_row_scaled<T: Real>(field: &mut [T], scale: &[T], [a, b]: [&[T]; 2], phi: &mut [T], p: RowProfile<T>) {
-    let n = field.len();
-    let (scale, a, b, phi) = (&scale[..n], &a[..n], &b[..n], &mut phi[..n]);
-    for k in 0..n {
-        let d = b[k] - a[k];
-        field[k] = field[k] + scale[k] * (p.ra_less_one * d + p.rb * phi[k]);
-        phi[k] = p.re * phi[k] - p.rf * d;
-    }
-}
-
-/// Corrects H at one end of a row, in a material that is not magnetic.
-#[inline(always)]
-pub fn absorb_columns<T: Real>(field: &mut [T], [a, b]: [&[T]; 2], phi: &mut [T], p: ColumnProfile<'_, T>) {
-    let n = field.len();
-    let (a, b, phi) = (&a[..n], &b[..n], &mut phi[..n]);
-    let (ra_less_one, rb, re, rf) = (&p.ra_less_one[..n], &p.rb[..n], &p.re[..n], &p.rf[..n]);
-    for k in 0..n {
-        let d = b[k] - a[k];
-        field[k] = field[k] + (ra_less_one[k] * d + rb[k] * phi[k]);
-        phi[k] = re[k] * phi[k] - rf[k] * d;
-    }
-}
-
-/// Corrects E at one end of a row, or H in a magnetic material.
-#[inline(always)]
-pub fn absorb_columns_scaled<T: Real>(
-    field: &mut [T],
-    scale: &[T],
-    [a, b]: [&[T]; 2],
-    phi: &mut [T],
-    p: ColumnProfile<'_, T>,
-) {
-    let n = field.len();
-    let (scale, a, b, phi) = (&scale[..n], &a[..n], &b[..n], &mut phi[..n]);
-    let (ra_less_one, rb, re, rf) = (&p.ra_less_one[..n], &p.rb[..n], &p.re[..n], &p.rf[..n]);
-    for k in 0..n {
-        let d = b[k] - a[k];
-        field[k] = field[k] + scale[k] * (ra_less_one[k] * d + rb[k] * phi[k]);
-        phi[k] = re[k] * phi[k] - rf[k] * d;
+impl<T: Real, G: Grade<T>> Kernel<T> for AbsorbEnds<'_, T, G> {
+    #[inline(always)]
+    fn run<S: Set<T>>(self, set: S) {
+        let Self { field, d: [a, b], grade, phi, profile: p, vectors: places, begin } = self;
+        let field = vectors_mut(field);
+        let (n, count) = (field.len(), places.len());
+        let (a, b, phi) = (vectors(a, n), vectors(b, n), &mut vectors_mut(phi)[..count]);
+        let (ra_less_one, rb) = (vectors(p.ra_less_one, count), vectors(p.rb, count));
+        let (re, rf) = (vectors(p.re, count), vectors(p.rf, count));
+        let grade = grade.open(set, n);
+        for place in 0..count {
+            let k = places[place].wrapping_sub(begin) / LANES;
+            if k >= n {
+                continue;
+            }
+            let (d, memory) = (set.sub(set.load(&b[k]), set.load(&a[k])), set.load(&phi[place]));
+            let gain = set.add(set.mul(set.load(&ra_less_one[place]), d), set.mul(set.load(&rb[place]), memory));
+            set.store(G::gain(set, grade, k, set.load(&field[k]), gain), &mut field[k]);
+            let kept = set.mul(set.load(&re[place]), memory);
+            set.store(set.sub(kept, set.mul(set.load(&rf[place]), d)), &mut phi[place]);
+        }
     }
 }
 
@@ -108,42 +94,78 @@ pub struct ColumnFilter<'a, T> {
 }
 
 /// Corrects a row in second order.
-#[inline(always)]
-pub fn absorb_row_twice<T: Real>(
-    field: &mut [T],
-    scale: &[T],
-    [a, b]: [&[T]; 2],
-    [phi1, phi2]: [&mut [T]; 2],
-    p: RowFilter<T>,
-) {
-    let n = field.len();
-    let (scale, a, b, phi1, phi2) = (&scale[..n], &a[..n], &b[..n], &mut phi1[..n], &mut phi2[..n]);
-    let RowFilter { add: [x, y, z], next: [[p1, q1, r1], [p2, q2, r2]] } = p;
-    for k in 0..n {
-        let (d, one, two) = (b[k] - a[k], phi1[k], phi2[k]);
-        field[k] = field[k] + scale[k] * (x * d + y * one + z * two);
-        phi1[k] = p1 * one + q1 * two + r1 * d;
-        phi2[k] = p2 * one + q2 * two + r2 * d;
+pub struct AbsorbRowTwice<'a, T> {
+    /// The component.
+    pub field: &'a mut [T],
+    /// What takes the curl, or ones.
+    pub scale: &'a [T],
+    /// The difference, `d[1] - d[0]`.
+    pub d: [&'a [T]; 2],
+    /// Two numbers a node.
+    pub phi: [&'a mut [T]; 2],
+    /// The coefficients.
+    pub filter: RowFilter<T>,
+}
+
+impl<T: Real> Kernel<T> for AbsorbRowTwice<'_, T> {
+    #[inline(always)]
+    fn run<S: Set<T>>(self, set: S) {
+        let Self { field, scale, d: [a, b], phi: [phi1, phi2], filter: p } = self;
+        let field = vectors_mut(field);
+        let n = field.len();
+        let (scale, a, b) = (vectors(scale, n), vectors(a, n), vectors(b, n));
+        let (phi1, phi2) = (&mut vectors_mut(phi1)[..n], &mut vectors_mut(phi2)[..n]);
+        let ([x, y, z], [[p1, q1, r1], [p2, q2, r2]]) = (p.add, p.next);
+        let (x, y, z) = (set.splat(x), set.splat(y), set.splat(z));
+        let (p1, q1, r1) = (set.splat(p1), set.splat(q1), set.splat(r1));
+        let (p2, q2, r2) = (set.splat(p2), set.splat(q2), set.splat(r2));
+        for k in 0..n {
+            let d = set.sub(set.load(&b[k]), set.load(&a[k]));
+            let (one, two) = (set.load(&phi1[k]), set.load(&phi2[k]));
+            let gain = set.add(set.add(set.mul(x, d), set.mul(y, one)), set.mul(z, two));
+            set.store(set.add(set.load(&field[k]), set.mul(set.load(&scale[k]), gain)), &mut field[k]);
+            set.store(set.add(set.add(set.mul(p1, one), set.mul(q1, two)), set.mul(r1, d)), &mut phi1[k]);
+            set.store(set.add(set.add(set.mul(p2, one), set.mul(q2, two)), set.mul(r2, d)), &mut phi2[k]);
+        }
     }
 }
 
 /// Corrects one end of a row in second order.
-#[inline(always)]
-pub fn absorb_columns_twice<T: Real>(
-    field: &mut [T],
-    scale: &[T],
-    [a, b]: [&[T]; 2],
-    [phi1, phi2]: [&mut [T]; 2],
-    p: ColumnFilter<'_, T>,
-) {
-    let n = field.len();
-    let (scale, a, b, phi1, phi2) = (&scale[..n], &a[..n], &b[..n], &mut phi1[..n], &mut phi2[..n]);
-    let [x, y, z] = p.add.map(|part| &part[..n]);
-    let [[p1, q1, r1], [p2, q2, r2]] = p.next.map(|row| row.map(|part| &part[..n]));
-    for k in 0..n {
-        let (d, one, two) = (b[k] - a[k], phi1[k], phi2[k]);
-        field[k] = field[k] + scale[k] * (x[k] * d + y[k] * one + z[k] * two);
-        phi1[k] = p1[k] * one + q1[k] * two + r1[k] * d;
-        phi2[k] = p2[k] * one + q2[k] * two + r2[k] * d;
+pub struct AbsorbEndTwice<'a, T> {
+    /// The component.
+    pub field: &'a mut [T],
+    /// What takes the curl, or ones.
+    pub scale: &'a [T],
+    /// The difference, `d[1] - d[0]`.
+    pub d: [&'a [T]; 2],
+    /// Two numbers a node.
+    pub phi: [&'a mut [T]; 2],
+    /// The coefficients.
+    pub filter: ColumnFilter<'a, T>,
+}
+
+impl<T: Real> Kernel<T> for AbsorbEndTwice<'_, T> {
+    #[inline(always)]
+    fn run<S: Set<T>>(self, set: S) {
+        let Self { field, scale, d: [a, b], phi: [phi1, phi2], filter: p } = self;
+        let field = vectors_mut(field);
+        let n = field.len();
+        let (scale, a, b) = (vectors(scale, n), vectors(a, n), vectors(b, n));
+        let (phi1, phi2) = (&mut vectors_mut(phi1)[..n], &mut vectors_mut(phi2)[..n]);
+        let ([x, y, z], [[p1, q1, r1], [p2, q2, r2]]) = (p.add, p.next);
+        let (x, y, z) = (vectors(x, n), vectors(y, n), vectors(z, n));
+        let (p1, q1, r1) = (vectors(p1, n), vectors(q1, n), vectors(r1, n));
+        let (p2, q2, r2) = (vectors(p2, n), vectors(q2, n), vectors(r2, n));
+        for k in 0..n {
+            let (x, y, z) = (set.load(&x[k]), set.load(&y[k]), set.load(&z[k]));
+            let (p1, q1, r1) = (set.load(&p1[k]), set.load(&q1[k]), set.load(&r1[k]));
+            let (p2, q2, r2) = (set.load(&p2[k]), set.load(&q2[k]), set.load(&r2[k]));
+            let d = set.sub(set.load(&b[k]), set.load(&a[k]));
+            let (one, two) = (set.load(&phi1[k]), set.load(&phi2[k]));
+            let gain = set.add(set.add(set.mul(x, d), set.mul(y, one)), set.mul(z, two));
+            set.store(set.add(set.load(&field[k]), set.mul(set.load(&scale[k]), gain)), &mut field[k]);
+            set.store(set.add(set.add(set.mul(p1, one), set.mul(q1, two)), set.mul(r1, d)), &mut phi1[k]);
+            set.store(set.add(set.add(set.mul(p2, one), set.mul(q2, two)), set.mul(r2, d)), &mut phi2[k]);
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! Relaxation and resonance on one run of edges of the same material.
 
 use super::super::super::real::Real;
+use super::super::vector::{Kernel, Set};
 
 /// The coefficients of one Debye or Drude pole.
 #[derive(Debug, Clone, Copy)]
@@ -31,15 +32,33 @@ pub struct Ringing<T> {
 ///
 /// Shape: `memory` holds the poles one after the other, `each` numbers for one, then two such parts, real and imaginary, for
 /// each Lorentz pole; `e` begins at place `from` of each.
+pub struct Relax<'a, T> {
+    /// E after its step.
+    pub e: &'a mut [T],
+    /// E before.
+    pub e_old: &'a [T],
+    /// The poles' memory.
+    pub memory: &'a mut [T],
+    /// Numbers of each part of the memory.
+    pub each: usize,
+    /// Place of `e` in each.
+    pub from: usize,
+    /// Debye and Drude.
+    pub poles: &'a [Pole<T>],
+    /// Lorentz.
+    pub ringing: &'a [Ringing<T>],
+}
+
+impl<T: Real> Kernel<T> for Relax<'_, T> {
+    #[inline(always)]
+    fn run<S: Set<T>>(self, _: S) {
+        relax(self);
+    }
+}
+
 #[inline(always)]
-pub fn relax<T: Real>(
-    e: &mut [T],
-    e_old: &[T],
-    memory: &mut [T],
-    (each, from): (usize, usize),
-    poles: &[Pole<T>],
-    ringing: &[Ringing<T>],
-) {
+fn relax<T: Real>(relax: Relax<'_, T>) {
+    let Relax { e, e_old, memory, each, from, poles, ringing } = relax;
     let n = e.len();
     let e_old = &e_old[..n];
     let (relaxing, resonant) = memory.split_at_mut(each * poles.len());
