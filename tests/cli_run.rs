@@ -187,7 +187,11 @@ fn geometry_files_are_written_and_read_back() {
     place.ok(&["run", "in/b.in", "--precision", "double"]);
     let traces = |name: &str| ballast_gpr::gprmax::read_traces(&place.path(name)).unwrap().receivers;
     assert!(traces("in/a.h5")[0].components.iter().any(|trace| trace.peak() > 0.0));
-    assert_eq!(traces("in/a.h5"), traces("in/b.h5"));
+    // The second takes another way through the solver, which knows edges of a block: rounding, no more.
+    for (a, b) in traces("in/a.h5")[0].components.iter().zip(&traces("in/b.h5")[0].components) {
+        let peak = a.peak();
+        assert!(a.samples.iter().zip(&b.samples).all(|(a, b)| (a - b).abs() <= 1e-12 * peak), "{}", a.component.name());
+    }
     fs::write(place.path("in/empty.in"), &WRITES[..objects]).unwrap();
     place.ok(&["run", "in/empty.in", "--precision", "double"]);
     assert_ne!(traces("in/a.h5"), traces("in/empty.h5"));

@@ -120,6 +120,7 @@ fn scene_with_voxels() -> Model {
             shape: [60, 30, 1],
             cells: Arc::from(cells),
             averaging: true,
+            edges: None,
         }),
         Object::Cylinder {
             start: [0.1013, 0.05, 0.0],

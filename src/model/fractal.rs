@@ -116,7 +116,7 @@ impl FractalBox {
         };
         cells.iter_mut().zip(filled).filter(|(_, filled)| !filled).for_each(|(cell, _)| *cell = None);
         cells.iter_mut().zip(wet).for_each(|(cell, wet)| *cell = wet.or(*cell));
-        Voxels { origin, shape, cells: cells.into(), averaging: self.averaging }
+        Voxels { origin, shape, cells: cells.into(), averaging: self.averaging, edges: None }
     }
 
     /// Cuts a rough face: within its range a column is filled up to the surface, whatever an earlier face left there, beyond it

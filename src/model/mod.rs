@@ -40,9 +40,11 @@ pub use geometry_file::GeometryFile;
 pub use grid::{Grid, ceil_half_down};
 pub use indices::Indices;
 pub use material::{DebyePole, Material, MaterialId, Resonance};
-pub use object::{Object, Voxels};
+pub use object::{BlockEdges, Object, Voxels};
 pub use order::{NoSuchOrder, Order};
-pub use paint::{Finished, PaintError, Parts, check_grid, check_two_dimensional, paint, paint_finished, paint3};
+pub use paint::{
+    Finished, PaintError, Parts, check_grid, check_two_dimensional, edge_flag, face_flag, paint, paint_finished, paint3,
+};
 pub use painted::Painted;
 pub use painted3::Painted3;
 pub use palette::{EdgeMaterial, FaceMaterial, MagneticAveraging};

@@ -139,7 +139,10 @@ impl Object {
             | Self::Triangle { material, .. }
             | Self::Plate { material, .. }
             | Self::Edge { material, .. } => *material == id,
-            Self::Voxels(block) => block.cells.contains(&Some(id)),
+            Self::Voxels(block) => {
+                let edges = block.edges.iter().flat_map(|edges| &edges.fields);
+                block.cells.contains(&Some(id)) || edges.into_iter().any(|field| field.contains(&id))
+            }
             Self::Fractal(fractal) => fractal.holds(id),
         }
     }
@@ -156,4 +159,17 @@ pub struct Voxels {
     pub cells: Arc<[Option<MaterialId>]>,
     /// Whether the edges between cells take the mean of the materials around them.
     pub averaging: bool,
+    /// What its cells claim, where that does not follow from their materials and `averaging`.
+    pub edges: Option<Arc<BlockEdges>>,
+}
+
+/// Which edges and faces the cells of a block claim, and what these are made of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BlockEdges {
+    /// What each cell claims, see [`edge_flag`](super::edge_flag) and [`face_flag`](super::face_flag); in the order of the
+    /// cells.
+    pub claims: Vec<u32>,
+    /// Material of Ex, Ey, Ez, Hx, Hy, Hz at each node of the block, z fastest. It counts where a cell in or beside the block
+    /// claims the edge or face.
+    pub fields: [Vec<MaterialId>; 6],
 }

@@ -1,6 +1,6 @@
 //! Which way through the embedded solver a model takes.
 
-use super::{Material, MaterialId, Model, Source};
+use super::{Material, MaterialId, Model, Object, Source};
 
 /// The most Debye and Drude poles of a material that the plane knows.
 pub const MOST_POLES_IN_A_PLANE: usize = 3;
@@ -76,6 +76,10 @@ impl Model {
         if let Some(unknown) = self.sources.iter().position(|source| !known(source)) {
             return Some(format!("source {} is a {}", unknown + 1, self.sources[unknown].kind()));
         }
+        let edges = |object: &Object| matches!(object, Object::Voxels(block) if block.edges.is_some());
+        if self.objects.iter().any(edges) {
+            return Some("a block of cells brings its own edges".into());
+        }
         (!self.snapshots.is_empty()).then(|| "it asks for snapshots".into())
     }
 }
@@ -83,7 +87,7 @@ impl Model {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Grid, Object, TimeWindow};
+    use crate::model::{Grid, TimeWindow};
 
     fn why(model: &Model) -> Option<String> {
         match model.route() {

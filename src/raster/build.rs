@@ -230,6 +230,7 @@ impl Builder {
             shape: [shape[0], shape[1], 1],
             cells: Arc::from(cells),
             averaging: self.averaging,
+            edges: None,
         }));
     }
 

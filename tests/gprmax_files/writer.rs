@@ -33,6 +33,7 @@ fn small_model() -> Model {
             shape: [2, 2, 1],
             cells: Arc::from([Some(stone), None, Some(MaterialId::PEC), Some(fines)]),
             averaging: true,
+            edges: None,
         }),
     ];
     let excitation = Excitation { start: 0.0, stop: None };
@@ -354,7 +355,7 @@ fn object(materials: u16, spacing: [f64; 3], cells: (usize, usize)) -> impl Stra
         .prop_flat_map(move |(nx, ny)| (Just([nx, ny, 1]), prop::collection::vec(prop::option::of(id()), nx * ny)));
     let voxels = (cells, any::<bool>(), 0..9u8).prop_map(move |((shape, cells), averaging, node)| {
         let origin = spacing.map(|size| f64::from(node) * size);
-        Object::Voxels(Voxels { origin, shape, cells: Arc::from(cells), averaging })
+        Object::Voxels(Voxels { origin, shape, cells: Arc::from(cells), averaging, edges: None })
     });
     prop_oneof![cuboid, cylinder, sphere, voxels]
 }

@@ -1,5 +1,7 @@
 //! The materials of a model as gprMax numbers them, those of averaged edges and faces among them.
 
+use std::collections::BTreeSet;
+
 use crate::model::{DebyePole, Finished, MagneticAveraging, Material, MaterialId, Model, Parts};
 
 /// Number of the perfect magnetic conductor, which no model lists.
@@ -12,6 +14,8 @@ pub struct Catalogue {
     pub materials: Vec<Material>,
     /// Number of each entry of [`Finished::parts`].
     pub of_parts: Vec<u32>,
+    /// What each of these is made of.
+    parts: Vec<Parts>,
 }
 
 impl Catalogue {
@@ -25,6 +29,23 @@ impl Catalogue {
     /// Number of a material of the model.
     pub fn number(id: MaterialId) -> u32 {
         if id == MaterialId::PEC { 0 } else { u32::from(id.0) + 1 }
+    }
+
+    /// The first material with Lorentz or Drude poles among some numbers, alone or in a mean.
+    pub fn resonant<'a>(&self, model: &'a Model, used: &BTreeSet<u32>) -> Option<&'a Material> {
+        let resonant = |id: &MaterialId| {
+            let material = &model.materials[id.index()];
+            (!material.resonances.is_empty()).then_some(material)
+        };
+        let parts = self.parts.iter().zip(&self.of_parts).filter(|(_, number)| used.contains(number));
+        let in_parts = parts.map(|(parts, _)| *parts).find_map(|parts| match parts {
+            Parts::One(id) => resonant(&id),
+            Parts::MagneticConductor => None,
+            Parts::Edge(ids) => ids.iter().find_map(resonant),
+            Parts::Face(ids) => ids.iter().find_map(resonant),
+        });
+        let cells = (0..model.materials.len()).map(|index| MaterialId(index as u16));
+        in_parts.or_else(|| cells.filter(|&id| used.contains(&Self::number(id))).find_map(|id| resonant(&id)))
     }
 
     /// Numbers all materials of a painted model.
@@ -47,7 +68,7 @@ impl Catalogue {
             of_parts[place] = materials.len() as u32;
             materials.push(mean);
         }
-        Self { materials, of_parts }
+        Self { materials, of_parts, parts: finished.parts.clone() }
     }
 }
 

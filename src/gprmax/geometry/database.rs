@@ -194,6 +194,12 @@ impl Database {
         })
     }
 
+    /// Whether a key names a perfect magnetic conductor.
+    pub fn is_magnetic_conductor(&self, key: &str) -> bool {
+        let base = self.materials.get(key).and_then(|entry| entry.base.as_ref());
+        base.is_some_and(|base| base.magnetic_conductivity_s_per_m.value().is_infinite())
+    }
+
     fn check(
         &self,
         key: &str,

@@ -23,14 +23,27 @@ pub enum GeometryError {
         /// The HDF5 file.
         path: PathBuf,
     },
-    /// The file carries finished edges, which are authoritative for gprMax.
-    #[error(
-        "`{}` holds `/ID`, `/rigidE` and `/rigidH`: gprMax then takes the edges from them and ignores `/data`, which the embedded solver cannot do\n\nhint: `--solver gprmax` runs the file in gprMax itself; or remove the three datasets, and the edges follow from `/data`",
-        path.display()
-    )]
-    FinishedEdges {
+    /// Finished edges that do not fit the cells.
+    #[error("`{dataset}` in `{}` has the shape {shape:?}, it should be {wanted:?}", path.display())]
+    Edges {
         /// The HDF5 file.
         path: PathBuf,
+        /// `/ID`, `/rigidE` or `/rigidH`.
+        dataset: &'static str,
+        /// Extents.
+        shape: Vec<usize>,
+        /// What they should be.
+        wanted: Vec<usize>,
+    },
+    /// An edge without a material.
+    #[error("`/ID` in `{}` holds the index {index}, allowed are 0 to {last}", path.display())]
+    EdgeIndex {
+        /// The HDF5 file.
+        path: PathBuf,
+        /// The index.
+        index: i64,
+        /// The highest that has a material.
+        last: i64,
     },
     /// The cells of the file are not those of the model.
     #[error("`{}` has cells of {found:?} m, the model has cells of {wanted:?} m", path.display())]

@@ -5,6 +5,7 @@
 mod catalogue;
 mod database;
 mod error;
+mod finished_file;
 mod request;
 mod views;
 mod voxels;

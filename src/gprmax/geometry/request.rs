@@ -1,12 +1,15 @@
 //! The geometry files that a model asks for: `#geometry_objects_write`.
 
 use std::collections::{BTreeSet, HashMap};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use super::super::hdf5::{Hdf5Error, to_bytes};
-use super::{voxel_group, write_database};
-use crate::model::{GeometryFile, Material, MaterialId, Model, PaintError, Voxels, paint, paint3};
+use super::catalogue::Catalogue;
+use super::finished_file::edge_datasets;
+use super::voxels::geometry_group;
+use super::write_database;
+use crate::model::{Finished, GeometryFile, Material, Model, PaintError, paint_finished};
 
 /// The most materials that 16-bit indices with sign can name.
 const MOST_MATERIALS: usize = i16::MAX as usize + 1;
@@ -28,6 +31,16 @@ pub enum GeometryWriteError {
         "`{id}` has Lorentz or Drude poles, which are not written into a material database (`#geometry_objects_write: … {file}`)\n\nhint: `--solver gprmax` runs the file in gprMax itself"
     )]
     Resonant {
+        /// Identifier of the material.
+        id: String,
+        /// Name of the geometry file.
+        file: String,
+    },
+    /// A material that depends on the direction.
+    #[error(
+        "`{id}` depends on the direction, which is not written into a material database (`#geometry_objects_write: … {file}`)\n\nhint: `--solver gprmax` runs the file in gprMax itself"
+    )]
+    Directional {
         /// Identifier of the material.
         id: String,
         /// Name of the geometry file.
@@ -71,11 +84,11 @@ pub fn geometry_paths(model: &Model, folder: &Path) -> Vec<PathBuf> {
     names.flatten().map(|name| folder.join(name)).collect()
 }
 
-/// Lays out the geometry files and material databases that a model asks for, each with its path.
+/// Lays out the geometry files and material databases that a model asks for, each with its path, as gprMax 4 does.
 ///
-/// An HDF5 file holds `/data`, the material of each cell after all objects have been painted, and `/material_keys`: what
-/// `#geometry_objects_read` of gprMax 4 and of this crate needs. It holds neither `/ID` nor `/rigidE` nor `/rigidH`: where
-/// an object is painted without averaging, or edges belong to plates or sheets, a reader does not find that again.
+/// `/data` is the material of each cell after all objects have been painted, `/rigidE` and `/rigidH` what edges and faces each
+/// cell claims, `/ID` what every edge and face is made of; `/material_keys` names the materials among which they count. A voltage
+/// with a resistance has no material of its own, which gprMax gives it.
 ///
 /// # Errors
 /// When the model cannot be painted or a material cannot be written.
@@ -83,47 +96,81 @@ pub fn geometry_files(model: &Model, folder: &Path) -> Result<Vec<(PathBuf, Vec<
     if model.geometry_files.is_empty() {
         return Ok(vec![]);
     }
-    let solid = if model.is_plane() { paint(model)?.solid } else { paint3(model)?.solid };
+    let finished = paint_finished(model)?;
+    let catalogue = Catalogue::of(model, &finished);
     let mut files = vec![];
     for asked in &model.geometry_files {
         let Some([geometry, json]) = geometry_names(&asked.file) else { continue };
-        let block = cut(model, &solid, asked);
-        let used: BTreeSet<MaterialId> = block.cells.iter().flatten().copied().collect();
-        let resonant = used.iter().map(|id| &model.materials[id.index()]).find(|m| !m.resonances.is_empty());
-        if let Some(material) = resonant {
-            return Err(GeometryWriteError::Resonant { id: material.id.clone(), file: asked.file.clone() });
+        let spans = spans(model, asked);
+        let data = cells_of(&finished, &spans);
+        let mut used: BTreeSet<u32> = data.iter().copied().collect();
+        for field in &finished.fields {
+            nodes_of(&finished, &spans).for_each(|node| {
+                used.insert(catalogue.of_parts[field[node] as usize]);
+            });
+        }
+        let of = |number: u32| &catalogue.materials[number as usize];
+        let file = || asked.file.clone();
+        if let Some(material) = catalogue.resonant(model, &used) {
+            return Err(GeometryWriteError::Resonant { id: material.id.clone(), file: file() });
+        }
+        if let Some(material) = used.iter().map(|&number| of(number)).find(|m| m.directional.is_some()) {
+            return Err(GeometryWriteError::Directional { id: material.id.clone(), file: file() });
         }
         if used.len() > MOST_MATERIALS {
-            let (file, count, limit) = (asked.file.clone(), used.len(), MOST_MATERIALS);
-            return Err(GeometryWriteError::TooManyMaterials { file, count, limit });
+            return Err(GeometryWriteError::TooManyMaterials {
+                file: file(),
+                count: used.len(),
+                limit: MOST_MATERIALS,
+            });
         }
         let database = json.file_stem().unwrap_or_default().to_string_lossy();
-        let materials: Vec<(String, &Material)> =
-            used.iter().map(|id| (format!("m{:05}", id.0), &model.materials[id.index()])).collect();
+        let key = |(index, number): (usize, &u32)| {
+            let name: String =
+                of(*number).id.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+            (format!("material_{index:03}_{name}"), of(*number))
+        };
+        let materials: Vec<(String, &Material)> = used.iter().enumerate().map(key).collect();
         let keys: Vec<String> = materials.iter().map(|(key, _)| key.clone()).collect();
-        let index_of: HashMap<_, _> = used.into_iter().zip(0i16..).collect();
-        let group = voxel_group(&block, model.grid.spacing, &database, &keys, &index_of);
+        let index_of: HashMap<u32, u32> = used.iter().copied().zip(0..).collect();
+        let index = |number: u32| index_of.get(&number).copied().unwrap_or_default();
+        let data = data.into_iter().map(|number| index(number) as i16).collect();
+        let shape = spans.each_ref().map(ExactSizeIterator::len);
+        let mut group = geometry_group(model.grid.spacing, &database, &keys, shape, data);
+        group.datasets.extend(edge_datasets(&finished, &spans, &|parts| index(catalogue.of_parts[parts])));
         files.push((folder.join(&geometry), to_bytes(&group)?));
         files.push((folder.join(&json), write_database(&database, &materials)?.into_bytes()));
     }
     Ok(files)
 }
 
-/// The cells of a painted grid that a geometry file asks for.
-fn cut(model: &Model, solid: &[MaterialId], asked: &GeometryFile) -> Voxels {
-    let [_, ny, nz] = model.grid.cells;
-    let span = |axis: usize| {
+/// The cells of the grid that a geometry file asks for.
+fn spans(model: &Model, asked: &GeometryFile) -> [Range<usize>; 3] {
+    std::array::from_fn(|axis| {
         let node = |metres| model.grid.node(axis, metres).clamp(0, model.grid.cells[axis] as i64) as usize;
         node(asked.lower[axis])..node(asked.upper[axis])
-    };
-    let [xs, ys, zs] = [0, 1, 2].map(span);
+    })
+}
+
+/// Number of the material of each cell of a block.
+fn cells_of(finished: &Finished, [xs, ys, zs]: &[Range<usize>; 3]) -> Vec<u32> {
+    let [_, ny, nz] = finished.cells;
     let mut cells = Vec::with_capacity(xs.len() * ys.len() * zs.len());
     for i in xs.clone() {
         for j in ys.clone() {
-            cells.extend(solid[(i * ny + j) * nz..][zs.clone()].iter().copied().map(Some));
+            let row = &finished.solid[(i * ny + j) * nz..][zs.clone()];
+            cells.extend(row.iter().map(|&id| Catalogue::number(id)));
         }
     }
-    Voxels { origin: asked.lower, shape: [xs.len(), ys.len(), zs.len()], cells: Arc::from(cells), averaging: true }
+    cells
+}
+
+/// Places of the nodes of a block.
+fn nodes_of(finished: &Finished, [xs, ys, zs]: &[Range<usize>; 3]) -> impl Iterator<Item = usize> {
+    let [_, ny, nz] = finished.cells;
+    let (ys, zs) = (ys.clone(), zs.clone());
+    let rows = (xs.start..=xs.end).flat_map(move |i| (ys.start..=ys.end).map(move |j| (i * (ny + 1) + j) * (nz + 1)));
+    rows.flat_map(move |row| (zs.start..=zs.end).map(move |k| row + k))
 }
 
 #[cfg(test)]

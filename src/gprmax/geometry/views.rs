@@ -40,7 +40,7 @@ pub fn view_files(
     let wants = |kind| model.geometry_views.iter().any(|view| view.kind == kind);
     let solid = match wants(ViewKind::Cells) {
         false => vec![],
-        true if model.grid.invariant_axis() == Some(2) => paint(model)?.solid,
+        true if model.is_plane() => paint(model)?.solid,
         true => paint3(model)?.solid,
     };
     let finished = if wants(ViewKind::Edges) { Some(paint_finished(model)?) } else { None };

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::super::hdf5::{Attribute, Data, Dataset, Group, H5File};
+use super::finished_file::FileEdges;
 use super::{Database, GeometryError};
 use crate::model::{Material, MaterialId, Model, Voxels};
 
@@ -28,9 +29,6 @@ pub(in super::super) fn read_voxels(
     if !file.has("/material_keys") {
         return Err(GeometryError::OldFormat { path: path() });
     }
-    if ["/ID", "/rigidE", "/rigidH"].iter().all(|name| file.has(name)) {
-        return Err(GeometryError::FinishedEdges { path: path() });
-    }
     if file.attribute("/", "MaterialDatabase")?.is_some() {
         let recorded = file.text("/", "MaterialDatabase")?;
         if recorded != database {
@@ -49,11 +47,22 @@ pub(in super::super) fn read_voxels(
         return Err(GeometryError::Shape { path: path(), shape, two_dimensional: invariant.is_some() });
     }
     let data = file.read_i16("/data")?;
+    let shape = [shape[0], shape[1], shape[2]];
+    let finished = ["/ID", "/rigidE", "/rigidH"].iter().all(|name| file.has(name));
+    let edges = if finished { Some(FileEdges::read(&file, shape)?) } else { None };
     let materials = Database::open(&geometry.with_file_name(format!("{database}.json")))?;
     let keys = file.read_texts("/material_keys")?;
+    // Means stand in the database too; those that nothing asks for are left there.
+    let asked =
+        |index: usize| edges.as_ref().is_none_or(|edges| edges.asks_for(index) || data.contains(&(index as i16)));
     let ids = keys
         .iter()
-        .map(|key| add(model, materials.material(key)?, database, geometry))
+        .enumerate()
+        .map(|(index, key)| match asked(index) {
+            true if edges.is_some() && materials.is_magnetic_conductor(key) => Ok(MaterialId::FREE_SPACE),
+            true => add(model, materials.material(key)?, database, geometry),
+            false => Ok(MaterialId::FREE_SPACE),
+        })
         .collect::<Result<Vec<_>, GeometryError>>()?;
     let cells = data
         .iter()
@@ -63,7 +72,8 @@ pub(in super::super) fn read_voxels(
             _ => Err(GeometryError::Index { path: path(), index, last: ids.len() as i64 - 1 }),
         })
         .collect::<Result<Vec<_>, _>>()?;
-    Ok(Voxels { origin, shape: [shape[0], shape[1], shape[2]], cells: Arc::from(cells), averaging })
+    let edges = edges.map(|edges| edges.with(&ids, geometry)).transpose()?.map(Arc::new);
+    Ok(Voxels { origin, shape, cells: Arc::from(cells), averaging, edges })
 }
 
 /// Finds or adds a material.
@@ -95,6 +105,17 @@ pub(in super::super) fn voxel_group(
     index_of: &HashMap<MaterialId, i16>,
 ) -> Group {
     let data = voxels.cells.iter().map(|cell| cell.and_then(|id| index_of.get(&id).copied()).unwrap_or(-1)).collect();
+    geometry_group(spacing, database, keys, voxels.shape, data)
+}
+
+/// The same from indices.
+pub(super) fn geometry_group(
+    spacing: [f64; 3],
+    database: &str,
+    keys: &[String],
+    shape: [usize; 3],
+    data: Vec<i16>,
+) -> Group {
     let dataset = |name: &str, shape, data, compressed| Dataset {
         name: name.into(),
         shape,
@@ -111,7 +132,7 @@ pub(in super::super) fn voxel_group(
             ("Title", Attribute::Text(concat!("written by ballast-gpr ", env!("CARGO_PKG_VERSION")).into())),
         ],
         datasets: vec![
-            dataset("data", voxels.shape.into(), Data::I16(data), true),
+            dataset("data", shape.into(), Data::I16(data), true),
             dataset("material_keys", vec![keys.len()], Data::Texts(keys.into()), false),
         ],
         groups: vec![],

@@ -44,7 +44,7 @@ pub(super) fn apply(
         "cylinder" => cylinder(model, command),
         "snapshot" => outputs::snapshot(model, command),
         "geometry_view" => outputs::geometry_view(model, command),
-        "geometry_objects_write" => outputs::geometry_objects_write(model, command, notes),
+        "geometry_objects_write" => outputs::geometry_objects_write(model, command),
         _ => geometry_objects_read(model, path, command),
     }
 }

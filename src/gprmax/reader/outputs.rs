@@ -3,18 +3,13 @@
 use std::path::Path;
 
 use super::super::geometry::geometry_names;
-use super::build::Note;
 use super::error::Problem;
 use super::lines::Command;
 use super::multiple::inside;
 use super::values::Parameters;
 use crate::model::{Axis, GeometryFile, GeometryView, Model, Snapshot, SnapshotFormat, SnapshotTime, ViewKind};
 
-pub(super) fn geometry_objects_write(
-    model: &mut Model,
-    command: &Command<'_>,
-    notes: &mut Vec<Note>,
-) -> Result<(), Problem> {
+pub(super) fn geometry_objects_write(model: &mut Model, command: &Command<'_>) -> Result<(), Problem> {
     let p = Parameters::of(command, "X1 Y1 Z1 X2 Y2 Z2 FILE", |n| n == 7)?;
     let (lower, upper, file) = (p.point(0)?, p.point(3)?, p.word(6)?);
     block(model, &p, lower, upper)?;
@@ -25,11 +20,6 @@ pub(super) fn geometry_objects_write(
         return Err(Problem::DefinedTwice { what: "geometry file", id: file.into() });
     }
     model.geometry_files.push(GeometryFile { lower, upper, file: file.into() });
-    let text = format!(
-        "`#geometry_objects_write` puts the cells into `{}`, not gprMax's `/ID`, `/rigidE` and `/rigidH`: plates, sheets and averaging flags are not in it",
-        names[0].display()
-    );
-    notes.push(Note { line: command.line, text });
     Ok(())
 }
 

@@ -31,6 +31,14 @@ pub enum WriteError {
         /// The identifier.
         id: String,
     },
+    /// A block of cells that brings its own edges.
+    #[error(
+        "object {number}, a block of cells with edges of its own, is not written again\n\nhint: use the input file and the geometry file that it came from"
+    )]
+    BlockEdges {
+        /// Place in the list of objects, from 1.
+        number: usize,
+    },
     /// A value that gprMax refuses.
     #[error("gprMax does not take {value} as {what}: it must be {limit}")]
     Value {

@@ -55,6 +55,9 @@ impl<'a> VoxelFiles<'a> {
                     files.in_commands.extend(fractal.surfaces.iter().filter_map(|s| Some(s.water?.1)));
                 }
                 Object::Voxels(block) => {
+                    if block.edges.is_some() {
+                        return Err(WriteError::BlockEdges { number: index + 1 });
+                    }
                     let used = used(block);
                     if let Some(id) = used.iter().find(|id| id.index() >= model.materials.len()) {
                         return Err(WriteError::Dangling { what: "material", index: id.index() });

@@ -153,6 +153,33 @@ impl Claims {
         }
     }
 
+    /// Lets a cell hold these claims and no others.
+    pub fn hold(&mut self, j: usize, k: usize, flags: u32) {
+        if flags != 0 {
+            self.begin();
+        }
+        if !self.held.is_empty() {
+            self.rows[j] |= flags != 0;
+            self.held[j * self.layout.n[2] + k] = flags;
+        }
+    }
+
+    /// Notes who claimed an edge (`field` 0 to 2) or face (3 to 5) at node `(j, k)` of the plane of nodes on the low (0) or
+    /// high (1) side of this plane of cells. It counts where a cell holds such a claim.
+    pub fn note(&mut self, field: usize, side: usize, [j, k]: [usize; 2], claim: Claim) {
+        self.begin();
+        let place = j * (self.layout.n[2] + 1) + k;
+        let list = match field {
+            0 => &mut self.x,
+            1 | 2 => &mut self.yz[field - 1][side],
+            3 => &mut self.across_x[side],
+            _ => &mut self.across_yz[field - 4],
+        };
+        if let Some(known) = list.get_mut(place) {
+            *known = claim;
+        }
+    }
+
     /// Claims one edge along an axis of the layout, from a node; the plane of cells `i` keeps what concerns it.
     pub fn claim_edge(&mut self, i: usize, axis: usize, [a, j, k]: [usize; 3], claim: Claim) {
         if !self.layout.wanted(axis) {

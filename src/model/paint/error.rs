@@ -69,4 +69,12 @@ pub enum PaintError {
         /// Cells given.
         cells: usize,
     },
+    /// A block of cells with edges of its own, whose arrays do not fit, or in the plane.
+    #[error(
+        "object {number}, a block of voxels, brings edges that do not fit its cells, or that the plane does not know"
+    )]
+    BlockEdges {
+        /// Place in the list of objects, from 1.
+        number: usize,
+    },
 }

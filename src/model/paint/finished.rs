@@ -47,6 +47,14 @@ impl Finished {
         self.claims[cell] & edge_flag(axis, high) != 0
     }
 
+    /// Drops what perfect conductors claim of their faces, from a cell on: in gprMax they claim edges only, and a solver does
+    /// not see the difference, since no field crosses their faces.
+    fn unclaim_conductors(&mut self, first: usize) {
+        let faces = (0..3).flat_map(|axis| [face_flag(axis, 0), face_flag(axis, 1)]).fold(0, |all, flag| all | flag);
+        let cells = self.claims.iter_mut().zip(&self.solid).skip(first);
+        cells.filter(|(_, id)| **id == MaterialId::PEC).for_each(|(claims, _)| *claims &= !faces);
+    }
+
     /// Whether a cell claims its face across an axis at the high (1) or low (0) end.
     pub fn claims_face(&self, cell: usize, axis: usize, high: usize) -> bool {
         self.claims[cell] & face_flag(axis, high) != 0
@@ -89,6 +97,7 @@ pub fn paint_finished(model: &Model) -> Result<Finished, PaintError> {
             for (j, row) in finisher.finished.claims[cells].chunks_exact_mut(nz).enumerate() {
                 row.copy_from_slice(now.in_row(j).unwrap_or(&vec![0; nz]));
             }
+            finisher.finished.unclaim_conductors(i * ny * nz);
         }
         finisher.plane(i, (i > 0).then_some(&before), (i < nx).then_some(&now));
         std::mem::swap(&mut before, &mut now);
@@ -163,10 +172,16 @@ impl Finisher<'_> {
                 };
         }
         let one = |id: MaterialId| Parts::One(self.model.materials[id.index()].along(axis, id));
-        if claimed {
-            return one(latest(lists, n[2], node[2]).material);
-        }
         let ids = &mut ids[..count];
+        let last = claimed.then(|| latest(lists, n[2], node[2]).material);
+        // A face beside a perfect conductor is made of what lies on the other side.
+        if !electric && ids.contains(&MaterialId::PEC) {
+            let other = ids.iter().copied().find(|&id| id != MaterialId::PEC).unwrap_or(MaterialId::FREE_SPACE);
+            return one(last.filter(|&id| id != MaterialId::PEC).unwrap_or(other));
+        }
+        if let Some(last) = last {
+            return one(last);
+        }
         ids.sort_unstable();
         match *ids {
             [a, .., b] if a == b => one(a),

@@ -20,6 +20,7 @@ mod solid;
 mod tests;
 mod whole;
 
+pub use claims::{edge_flag, face_flag};
 pub use error::PaintError;
 pub use finished::{Finished, Parts, paint_finished};
 pub use layout::{check_grid, check_two_dimensional};

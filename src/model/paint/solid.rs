@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::PaintError;
 use super::claims::{Claim, Claims};
 use super::layout::Layout;
-use crate::model::{Material, MaterialId, Model, Object, Voxels};
+use crate::model::{BlockEdges, Material, MaterialId, Model, Object, Voxels};
 
 /// An object snapped to the grid.
 pub struct Solid<'a> {
@@ -266,12 +266,25 @@ impl<'a> Solid<'a> {
                 return Err(PaintError::NoSuchMaterial { number, material, materials });
             }
         }
+        if let Some(edges) = &voxels.edges {
+            let nodes: usize = voxels.shape.iter().map(|cells| cells + 1).product();
+            let fits =
+                edges.claims.len() == voxels.cells.len() && edges.fields.iter().all(|field| field.len() == nodes);
+            let known = edges.fields.iter().flatten().all(|material| material.index() < materials.len());
+            if layout.flat || !fits || !known {
+                return Err(PaintError::BlockEdges { number });
+            }
+        }
         let origin: [i64; 3] = std::array::from_fn(|axis| layout.grid.node(axis, voxels.origin[axis]));
         let span = |axis: usize| {
             let inside = |node: i64| node.clamp(0, layout.grid.cells[axis] as i64) as usize;
             inside(origin[axis])..inside(origin[axis].saturating_add(voxels.shape[axis] as i64))
         };
-        let cells = layout.turned(&std::array::from_fn(span));
+        let mut cells = layout.turned(&std::array::from_fn(span));
+        if voxels.edges.is_some() {
+            // Its last plane of nodes has edges in the next plane of cells.
+            cells[0].end = (cells[0].end + 1).min(layout.n[0]);
+        }
         let claims = materials.iter().map(|material| claims(model, material, voxels.averaging)).collect();
         let shape = Shape::Voxels { voxels, origin, claims };
         Ok(Self { number, cells, shape, material: MaterialId::FREE_SPACE, claims: false })
@@ -461,6 +474,9 @@ impl<'a> Solid<'a> {
         let within = |axis: usize, cell: usize| (cell as i64 - origin[axis]) as usize;
         let i = within(0, plane.i);
         let mut filled = false;
+        if let Some(edges) = &voxels.edges {
+            return self.fill_edges(plane, voxels, edges, origin);
+        }
         for j in rows {
             for k in run.clone() {
                 let [y, z] = if layout.flat { [within(1, k), within(2, j)] } else { [within(1, j), within(2, k)] };
@@ -468,6 +484,49 @@ impl<'a> Solid<'a> {
                 let claim = Claim { object: self.number as u32, material };
                 plane.run(j, k..k + 1, claim, claims[material.index()]);
                 filled = true;
+            }
+        }
+        filled
+    }
+}
+
+impl Solid<'_> {
+    /// Fills a plane with the cells of a block that brings its own edges: its cells hold the claims that it says, and every
+    /// edge and face of the block takes its material wherever a cell claims it.
+    fn fill_edges(&self, plane: &mut Plane<'_>, voxels: &Voxels, edges: &BlockEdges, origin: [i64; 3]) -> bool {
+        let [_, rows, cells] = plane.layout.n;
+        let [mx, my, mz] = voxels.shape;
+        let at = plane.i as i64 - origin[0];
+        let mut filled = false;
+        let on_grid = |axis: usize, index: usize, most: usize| {
+            usize::try_from(origin[axis] + index as i64).ok().filter(|&found| found < most)
+        };
+        if let Some(i) = usize::try_from(at).ok().filter(|&i| i < mx) {
+            for (y, j) in (0..my).filter_map(|y| Some((y, on_grid(1, y, rows)?))) {
+                for (z, k) in (0..mz).filter_map(|z| Some((z, on_grid(2, z, cells)?))) {
+                    let place = (i * my + y) * mz + z;
+                    if let Some(material) = voxels.cells[place] {
+                        plane.solid[j * cells + k] = material;
+                    }
+                    plane.claims.hold(j, k, edges.claims[place]);
+                    filled = true;
+                }
+            }
+        }
+        // The plane of nodes before these cells, and for what lies on it the one behind them.
+        for side in [0, 1] {
+            let Some(i) = usize::try_from(at + side as i64).ok().filter(|&i| i <= mx) else { continue };
+            for (y, j) in (0..=my).filter_map(|y| Some((y, on_grid(1, y, rows + 1)?))) {
+                for (z, k) in (0..=mz).filter_map(|z| Some((z, on_grid(2, z, cells + 1)?))) {
+                    let place = (i * (my + 1) + y) * (mz + 1) + z;
+                    for (field, materials) in edges.fields.iter().enumerate() {
+                        if side == 1 && !(1..=3).contains(&field) {
+                            continue;
+                        }
+                        let claim = Claim { object: self.number as u32, material: materials[place] };
+                        plane.claims.note(field, side, [j, k], claim);
+                    }
+                }
             }
         }
         filled

@@ -111,6 +111,7 @@ fn voxels_leave_cells_that_hold_nothing() {
         shape: [2, 2, 1],
         cells,
         averaging: true,
+        edges: None,
     }));
     let painted = paint(&model).unwrap();
     assert_eq!(painted.cells_per_material(2), [1, 8]);
@@ -303,7 +304,7 @@ proptest! {
         with_box.objects.push(cuboid([i0, j0, i0 + wide, j0 + high], stone, averaging));
         let origin = [i0 as f64 * 0.002, j0 as f64 * 0.002, 0.0];
         let cells = vec![Some(stone); wide * high].into();
-        with_voxels.objects.push(Object::Voxels(Voxels { origin, shape: [wide, high, 1], cells, averaging }));
+        with_voxels.objects.push(Object::Voxels(Voxels { origin, shape: [wide, high, 1], cells, averaging, edges: None }));
         prop_assert_eq!(paint(&with_box).unwrap(), paint(&with_voxels).unwrap());
     }
 

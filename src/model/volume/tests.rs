@@ -197,7 +197,7 @@ fn cells_of_a_block_are_as_they_are() {
     let dense = model.add_material(Material::dielectric("dense", 11.0, 0.0));
     let cells = (0..27).map(|c| [Some(stone), None, Some(dense)][c * 7 % 5 % 3]).collect();
     let origin = [D[0], D[1], D[2]];
-    model.objects.push(Object::Voxels(Voxels { origin, shape: [3; 3], cells, averaging: true }));
+    model.objects.push(Object::Voxels(Voxels { origin, shape: [3; 3], cells, averaging: true, edges: None }));
     let shapes = paint3(&model).unwrap();
     model.averaging = Averaging::Cells;
     let snapped = paint3(&model).unwrap();
