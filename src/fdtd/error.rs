@@ -14,13 +14,15 @@ pub enum FdtdError {
     /// The model cannot be run on this grid or machine.
     #[error(transparent)]
     Check(#[from] CheckError),
-    /// Differences of fourth order in three dimensions.
+    /// Differences of fourth order in three dimensions, with something that they do not take.
     #[error(
-        "in three dimensions there are differences of order 2 only, but the model asks for {order}\n\nhint: `--order 2`"
+        "differences of order {order} in three dimensions do not take {what}\n\nhint: `--order 2`, or `## ballast-gpr: order 2` in the file"
     )]
     OrderInThree {
         /// What the model asks for.
         order: Order,
+        /// What it holds.
+        what: &'static str,
     },
     /// A magnetic material.
     #[error(

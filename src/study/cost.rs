@@ -56,8 +56,8 @@ pub trait CostSubject {
     fn component(&self) -> Component;
     /// What can happen where two materials meet. The reference is the limit of the second-order runs with the first.
     fn smoothings(&self) -> &'static [Smoothing];
-    /// Orders of differences.
-    fn orders(&self) -> &'static [Order];
+    /// Orders of differences, each with the finest cells that it is run on, m; the second order on all.
+    fn orders(&self) -> &'static [(Order, f64)];
     /// Duration of a step of order 4, in steps of order 2.
     fn step_of_order_four(&self) -> f64;
 }
@@ -139,8 +139,8 @@ impl CostSubject for CostScene {
         &[Smoothing::Area, Smoothing::None, Smoothing::Edges, Smoothing::Shapes]
     }
 
-    fn orders(&self) -> &'static [Order] {
-        &[Order::Second, Order::Fourth]
+    fn orders(&self) -> &'static [(Order, f64)] {
+        &[(Order::Second, 0.0), (Order::Fourth, 0.0)]
     }
 
     /// 2.3 to 2.6 were measured.
@@ -198,7 +198,7 @@ const COMMON_STEP: f64 = 5e-12;
 ///
 /// The reference is the limit of the runs of order 2 with the subject's first smoothing in the most precise solver that takes
 /// all cells, by Richardson extrapolation of the traces with the order measured on the three finest cells; the limit of those
-/// of order 4 (or else 2) from the true shapes, found in the same way, tells how far it can be trusted.
+/// of order 4 (of order 2 where there are too few) from the true shapes, found in the same way, tells how far it can be trusted.
 ///
 /// # Errors
 /// See [`CostError`].
@@ -214,18 +214,21 @@ pub fn cost_curve(
     };
     let (smoothings, orders) = (subject.smoothings(), subject.orders());
     let takes = |solver: &CostSolver<'_>, cell: &Metres| cell.si() >= solver.finest.si() * (1.0 - 1e-9);
-    let sizes: usize = solvers.iter().map(|solver| cells.iter().filter(|cell| takes(solver, cell)).count()).sum();
-    let total = sizes * smoothings.len() * orders.len();
+    let settings = |solver: &CostSolver<'_>| -> Vec<(Metres, Order)> {
+        let each =
+            cells.iter().filter(|cell| takes(solver, cell)).flat_map(|&cell| orders.iter().map(move |o| (cell, o)));
+        let fine_enough = |(cell, (_, least)): &(Metres, &(Order, f64))| cell.si() >= least * (1.0 - 1e-9);
+        each.filter(fine_enough).map(|(cell, (order, _))| (cell, *order)).collect()
+    };
+    let total = smoothings.len() * solvers.iter().map(|solver| settings(solver).len()).sum::<usize>();
     let mut runs: Vec<(CostPoint, AScan)> = Vec::new();
     for solver in solvers {
-        for &cell in cells.iter().filter(|cell| takes(solver, cell)) {
-            for &order in orders {
-                let mut alone = None;
-                for &smoothing in smoothings {
-                    let setting = CostSetting { cell, smoothing, order, double_precision: solver.double_precision };
-                    runs.push(one_run(subject, setting, solver, &mut alone, on_progress)?);
-                    on_point(runs.len(), total);
-                }
+        for (cell, order) in settings(solver) {
+            let mut alone = None;
+            for &smoothing in smoothings {
+                let setting = CostSetting { cell, smoothing, order, double_precision: solver.double_precision };
+                runs.push(one_run(subject, setting, solver, &mut alone, on_progress)?);
+                on_point(runs.len(), total);
             }
         }
     }
@@ -236,8 +239,8 @@ pub fn cost_curve(
         limit(&traces).ok_or(CostError::TooFewCells { cells: traces.len() })
     };
     let (limit, measured_order, last) = limit_of(smoothings[0], Order::Second)?;
-    let best = if orders.contains(&Order::Fourth) { Order::Fourth } else { Order::Second };
-    let (other, order_of_shapes, _) = limit_of(Smoothing::Shapes, best)?;
+    let (other, order_of_shapes, _) =
+        limit_of(Smoothing::Shapes, Order::Fourth).or_else(|_| limit_of(Smoothing::Shapes, Order::Second))?;
     let size = norm(&limit.samples);
     let finest_difference = last / size;
     let limits_differ = distance(&limit, &other) / size;

@@ -153,14 +153,12 @@ fn print(table: &CostTable, curve: &Curve) {
         ]);
     }
     report.print();
-    let orders = curve.subject.orders();
     println!(
-        "order of convergence: smoothing `{}` and order 2 {:.2}, the two finest differ by {:.2} %; true shapes and order {} \
+        "order of convergence: smoothing `{}` and order 2 {:.2}, the two finest differ by {:.2} %; true shapes and order 4 \
          {:.2}; their limits differ by {:.3} %",
         curve.subject.smoothings()[0].name(),
         table.measured_order,
         100.0 * table.finest_difference,
-        orders[orders.len() - 1],
         table.order_of_shapes,
         100.0 * table.limits_differ
     );
@@ -189,11 +187,8 @@ fn figure(table: &CostTable, curve: &Curve) -> Chart {
             }
         }
     }
-    let orders = curve.subject.orders();
     for point in table.points.iter().filter(|p| {
-        !p.setting.double_precision
-            && p.setting.smoothing == Smoothing::Shapes
-            && p.setting.order == orders[orders.len() - 1]
+        !p.setting.double_precision && p.setting.smoothing == Smoothing::Shapes && p.setting.order == Order::Fourth
     }) {
         chart.markers.push(crate::plot::Marker {
             x: point.seconds,

@@ -10,9 +10,11 @@
 //! three components and one row in a plane.
 
 mod absorbing;
+mod absorbing_fourth;
 mod camera;
 mod drive;
 mod fields;
+mod fourth;
 mod grades;
 mod instructions;
 mod kernel;

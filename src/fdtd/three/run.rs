@@ -11,6 +11,7 @@ use super::super::{Fdtd, FdtdError, Precision, Stats};
 use super::absorbing::Absorbing;
 use super::camera::{Camera, Look};
 use super::fields::Fields;
+use super::fourth;
 use super::grades::Grades;
 use super::plane::{Probe, Shared};
 use super::reach::Cones;
@@ -20,7 +21,7 @@ use super::team;
 use super::turn::Turn;
 use super::vector::Number;
 use crate::forward::OnProgress;
-use crate::model::{Grid, Model, Painted3, Resolution, TimeWindow, available_memory, check_memory, paint3};
+use crate::model::{Grid, Model, Order, Painted3, Resolution, TimeWindow, available_memory, check_memory, paint3};
 use crate::trace::{AScan, Component, ReceiverTraces, Traces};
 use crate::units::{Metres, Seconds};
 
@@ -131,12 +132,48 @@ impl Fdtd {
     ) -> Result<(Traces, Stats), FdtdError> {
         let bytes = bytes_needed(&setup, self.precision);
         check_memory(bytes, available_memory())?;
-        let (probes, mut stats) = match self.precision {
+        if setup.order == Order::Fourth {
+            return match self.precision {
+                Precision::Single => self.run_fourth::<f32>(model, &setup, bytes, on_progress),
+                Precision::Double => self.run_fourth::<f64>(model, &setup, bytes, on_progress),
+            };
+        }
+        let (mut probes, mut stats) = match self.precision {
             Precision::Single => self.run_three::<f32>(model, &mut setup, bytes, manner, on_progress)?,
             Precision::Double => self.run_three::<f64>(model, &mut setup, bytes, manner, on_progress)?,
         };
         stats.bytes = bytes;
-        Ok((traces(self.precision, model, &setup, probes), stats))
+        // Nothing lies beyond the last plane: what a receiver on that wall reads is zero.
+        let samples = |receiver: usize| {
+            let place = probes.iter().position(|probe| probe.receiver == receiver);
+            let nothing = || std::array::from_fn(|_| vec![0.0; setup.iterations]);
+            place.map_or_else(nothing, |place| probes.swap_remove(place).samples)
+        };
+        Ok((traces(self.precision, model, &setup, samples), stats))
+    }
+
+    /// Threads that a model gets.
+    fn threads_in_space(&self, model: &Model) -> usize {
+        let asked = self.threads.or_else(|| model.threads.and_then(NonZeroUsize::new));
+        let wanted = asked.or_else(|| std::thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
+        team::worthwhile_threads(model.grid.cell_count(), model.grid.cells[0], wanted)
+    }
+
+    /// Runs a model with differences of fourth order.
+    fn run_fourth<T: Number>(
+        &self,
+        model: &Model,
+        setup: &Setup3<'_>,
+        bytes: u64,
+        on_progress: OnProgress<'_>,
+    ) -> Result<(Traces, Stats), FdtdError> {
+        let instruction_set = self.instruction_set.resolve()?.set();
+        let threads = self.threads_in_space(model);
+        let (mut samples, wall) = fourth::run::<T>(setup, threads, on_progress)?;
+        let cell_steps = model.grid.cell_count() as u64 * setup.iterations as u64;
+        let stats = Stats { wall: Seconds(wall.as_secs_f64()), cell_steps, bytes, threads, instruction_set };
+        let samples = |receiver: usize| std::mem::replace(&mut samples[receiver], std::array::from_fn(|_| vec![]));
+        Ok((traces(self.precision, model, setup, samples), stats))
     }
 
     fn run_three<T: Number>(
@@ -148,9 +185,7 @@ impl Fdtd {
         on_progress: OnProgress<'_>,
     ) -> Result<(Vec<Probe>, Stats), FdtdError> {
         let instruction_set = self.instruction_set.resolve()?.set();
-        let asked = self.threads.or_else(|| model.threads.and_then(NonZeroUsize::new));
-        let wanted = asked.or_else(|| std::thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
-        let threads = team::worthwhile_threads(model.grid.cell_count(), model.grid.cells[0], wanted);
+        let threads = self.threads_in_space(model);
         let shared = Shared::<T>::new(setup, instruction_set, manner.skip);
         let share = team::Share { threads, height: team::tile_height(model.grid.cells, bytes) };
         let planes = team::planes(setup, &shared);
@@ -165,14 +200,16 @@ impl Fdtd {
 }
 
 /// Puts what the receivers recorded into the order of the model.
-fn traces(precision: Precision, model: &Model, setup: &Setup3<'_>, mut probes: Vec<Probe>) -> Traces {
+fn traces(
+    precision: Precision,
+    model: &Model,
+    setup: &Setup3<'_>,
+    mut samples_of: impl FnMut(usize) -> [Vec<f64>; 6],
+) -> Traces {
     let dt = setup.dt;
     let scale = setup.scale();
-    let nothing = || std::array::from_fn(|_| vec![0.0; setup.iterations]);
-    // Nothing lies beyond the last plane: what a receiver on that wall reads is zero.
     let receivers = model.receivers.iter().enumerate().map(|(index, receiver)| {
-        let place = probes.iter().position(|probe| probe.receiver == index);
-        let samples: [Vec<f64>; 6] = place.map_or_else(nothing, |place| probes.swap_remove(place).samples);
+        let samples = samples_of(index);
         let node = setup.receivers[index];
         let name = receiver.name.clone().unwrap_or_else(|| format!("Rx({},{},{})", node[0], node[1], node[2]));
         let position = model.grid.node_position(node).map(Metres);
@@ -210,9 +247,11 @@ pub fn painting_bytes(model: &Model) -> u64 {
 
 /// Memory of the fields, the coefficients and the absorbing boundary of a run, bytes.
 pub fn bytes_needed(setup: &Setup3<'_>, precision: Precision) -> u64 {
-    match precision {
-        Precision::Single => bytes::<f32>(setup),
-        Precision::Double => bytes::<f64>(setup),
+    match (setup.order, precision) {
+        (Order::Second, Precision::Single) => bytes::<f32>(setup),
+        (Order::Second, Precision::Double) => bytes::<f64>(setup),
+        (Order::Fourth, Precision::Single) => fourth::bytes::<f32>(setup),
+        (Order::Fourth, Precision::Double) => fourth::bytes::<f64>(setup),
     }
 }
 
@@ -292,7 +331,9 @@ pub fn predict_three(
     let per_step = if marginal > 0.2 * whole { marginal } else { whole };
     let per_cell = per_step / (planes * ny * nz) as f64;
     let cell_steps = model.grid.cell_count() as u64 * setup.iterations as u64;
-    let share_saved = Cones::new(&setup, true).reach().share_saved;
+    // With differences of fourth order every cell makes every step.
+    let skips = setup.order == Order::Second;
+    let share_saved = if skips { Cones::new(&setup, true).reach().share_saved } else { 0.0 };
     let seconds = per_cell * cell_steps as f64 * (1.0 - share_saved);
     Ok(Prediction { bytes, seconds, cell_steps, share_saved, shares: TimeShares::default() })
 }

@@ -8,6 +8,7 @@ use super::super::setup::node_in_grid;
 use super::super::slab::Slab;
 use super::camera::Look;
 use super::drive::{Drive, Load, drives, loads};
+use super::fourth;
 use crate::model::{
     Axis, FaceMaterial, Indices, Model, Order, Painted3, available_memory, check_absorbing_cells, check_grid,
     check_mode, check_recording, check_stability_factor,
@@ -32,6 +33,7 @@ pub struct Setup3<'a> {
     pub receivers: Vec<[usize; 3]>,
     /// Snapshots, in the order of their steps.
     pub looks: Vec<Look>,
+    pub order: Order,
     pub iterations: usize,
     pub dt: f64,
     pub spacing: [f64; 3],
@@ -95,7 +97,7 @@ impl<'a> Setup3<'a> {
                 receiver.name.clone().unwrap_or(format!("receiver {}", index + 1))
             })
         });
-        Ok(Self {
+        let setup = Self {
             drives,
             loads,
             receivers: receivers.collect::<Result<_, _>>()?,
@@ -104,11 +106,16 @@ impl<'a> Setup3<'a> {
             slabs: slabs(model, &painted)?,
             painted,
             edges,
+            order: model.order,
             iterations: model.iterations(),
             dt,
             spacing: model.grid.spacing,
             active: Active::of(model),
-        })
+        };
+        match fourth::refusal(model, &setup) {
+            Some(what) if model.order == Order::Fourth => Err(FdtdError::OrderInThree { order: model.order, what }),
+            _ => Ok(setup),
+        }
     }
 
     /// The nodes that sources act on, each with the first step at which it does.
@@ -209,9 +216,6 @@ pub fn on_wall(cells: [usize; 3], axis: usize, node: [usize; 3]) -> bool {
 /// A grid, a time step or absorbing cells that cannot be, samples beyond the memory.
 pub fn check_model(model: &Model) -> Result<(), FdtdError> {
     check_stability_factor(model)?;
-    if model.order != Order::Second {
-        return Err(FdtdError::OrderInThree { order: model.order });
-    }
     check_grid(&model.grid)?;
     check_recording(model, available_memory())?;
     check_mode(model)?;
