@@ -4,7 +4,7 @@
 //! outer wall lies E along the wall reversed, and H along it the same. Where a conductor stands between two places of H the
 //! difference does not look through it, on both ways, as in two dimensions (`conductor`).
 //!
-//! Each component is stepped as a whole before the next: simple, and bound by memory. There are no light cones, no tiles and no
+//! H is stepped as a whole before E: simple, and bound by memory. There are no light cones, no tiles and no
 //! checkpoints yet; media that relax or are magnetic, sections and absorbing cells of second order are refused by name.
 
 use std::time::{Duration, Instant};
@@ -72,14 +72,16 @@ pub fn run<T: Real>(
     let profiles = Profiles4::<T>::new(setup);
     let mut samples: Vec<Samples> =
         setup.receivers.iter().map(|_| std::array::from_fn(|_| vec![0.0; setup.iterations])).collect();
-    let limit = T::of(setup.limit());
+    let (limit, ratios) = (T::of(setup.limit()), std::array::from_fn(|axis| T::of(setup.ratio(axis))));
     let begin = Instant::now();
     let mut last = begin;
     for step in 0..setup.iterations {
         for (node, samples) in setup.receivers.iter().zip(&mut samples) {
             for (field, samples) in samples.iter_mut().enumerate() {
                 let list = if field < 3 { &fields.e[field] } else { &fields.h[field - 3] };
-                samples[step] = list[fields.place(*node)].double();
+                // Nothing lies behind the last cells: what is stored there are images.
+                let inside = (0..3).all(|axis| field == axis + 3 || node[axis] < fields.cells[axis]);
+                samples[step] = if inside || field < 3 { list[fields.place(*node)].double() } else { 0.0 };
             }
         }
         let is_last = step + 1 == setup.iterations;
@@ -95,18 +97,12 @@ pub fn run<T: Real>(
                 return Err(FdtdError::Stopped);
             }
         }
-        pool.install(|| {
-            for axis in 0..3 {
-                fields.step_h(axis, &mut absorbing, &profiles);
-            }
-            fields.drive(setup, step, true);
-            fields.mirror_h();
-            for axis in 0..3 {
-                fields.step_e(axis, setup, &mut absorbing, &profiles);
-            }
-            fields.drive(setup, step, false);
-            fields.mirror_e();
-        });
+        pool.install(|| fields.step_h(&mut absorbing, &profiles));
+        fields.drive(setup, step, true);
+        fields.mirror_h();
+        pool.install(|| fields.step_e(ratios, &mut absorbing, &profiles));
+        fields.drive(setup, step, false);
+        fields.mirror_e();
     }
     let _ = on_progress(Progress { done: setup.iterations, total: setup.iterations });
     Ok((samples, begin.elapsed()))
@@ -227,69 +223,81 @@ impl<T: Real> Fields<T> {
         (self.cuts_h, self.cuts_e) = (cuts_h, cuts_e);
     }
 
-    /// One step of a component of H: `H_a += D_c E_b - D_b E_c`, `b` and `c` the axes after `a` in turn.
-    fn step_h(&mut self, axis: usize, absorbing: &mut Absorbing4<T>, profiles: &Profiles4<T>) {
-        let [b, c] = OTHERS[axis];
+    /// One step of H: `H_a += D_c E_b - D_b E_c`, `b` and `c` the axes after `a` in turn.
+    fn step_h(&mut self, absorbing: &mut Absorbing4<T>, profiles: &Profiles4<T>) {
         let (plane, [nx, ny, nz]) = (self.stride(0), self.cells);
-        let mut h = std::mem::take(&mut self.h[axis]);
+        let [mut hx, mut hy, mut hz] = std::mem::take(&mut self.h);
         let this = &*self;
-        // H along an axis has no place behind the last cell across it.
-        let [rows, run] = [ny + usize::from(axis == 1), nz + usize::from(axis == 2)];
-        let planes = h[plane..].par_chunks_mut(plane).zip(&mut absorbing.h[axis]).enumerate();
-        planes.take(nx + usize::from(axis == 0)).for_each(|(i, (h, memory))| {
-            let mut scratch = [vec![T::default(); run], vec![T::default(); run]];
-            for j in 0..rows {
+        let [mx, my, mz] = &mut absorbing.h;
+        let planes = hx[plane..].par_chunks_mut(plane).zip(hy[plane..].par_chunks_mut(plane));
+        let planes = planes.zip(hz[plane..].par_chunks_mut(plane)).zip(mx).zip(my).zip(mz).enumerate();
+        planes.take(nx + 1).for_each(|(i, (((((hx, hy), hz), mx), my), mz))| {
+            let mut scratch = [vec![T::default(); nz + 1], vec![T::default(); nz + 1]];
+            for j in 0..=ny {
                 let at = this.place([i, j, 0]);
-                let [first, second] = &mut scratch;
-                for (out, of, along) in [(&mut *first, b, c), (&mut *second, c, b)] {
-                    let stride = this.stride(along);
-                    let row = |by: usize| &this.e[of][at + by * stride - stride..][..run];
-                    difference(out, [row(0), row(1), row(2), row(3)]);
-                    let which = usize::from(OTHERS[of][1] == along);
-                    cut_h(out, &this.e[of], &this.cuts_h[of][which][i], (j, at, stride));
+                for (axis, h, memory) in [(0, &mut *hx, &mut *mx), (1, &mut *hy, &mut *my), (2, &mut *hz, &mut *mz)] {
+                    // H along an axis has no place behind the last cell across it.
+                    if (i == nx && axis != 0) || (j == ny && axis != 1) {
+                        continue;
+                    }
+                    let ([b, c], run) = (OTHERS[axis], nz + usize::from(axis == 2));
+                    let [first, second] = &mut scratch;
+                    for (out, of, along) in [(&mut first[..run], b, c), (&mut second[..run], c, b)] {
+                        let stride = this.stride(along);
+                        let row = |by: usize| &this.e[of][at + by * stride - stride..][..run];
+                        difference(out, [row(0), row(1), row(2), row(3)]);
+                        let which = usize::from(OTHERS[of][1] == along);
+                        cut_h(out, &this.e[of], &this.cuts_h[of][which][i], (j, at, stride));
+                    }
+                    let h = &mut h[at % plane..][..run];
+                    take_h(h, first, second);
+                    let factors = [T::of(1.0), T::of(-1.0)];
+                    memory.correct(h, &profiles.ones, [c, b], factors, &scratch, profiles.h(), [i, j]);
                 }
-                let h = &mut h[at % plane..][..run];
-                take_h(h, first, second);
-                memory.correct(h, &profiles.ones, [c, b], [T::of(1.0), T::of(-1.0)], &scratch, profiles.h(), [i, j]);
             }
         });
-        self.h[axis] = h;
+        self.h = [hx, hy, hz];
     }
 
-    /// One step of a component of E: `E_a = ca E_a + cb (D_b H_c - ratio D_c H_b)`.
-    fn step_e(&mut self, axis: usize, setup: &Setup3<'_>, absorbing: &mut Absorbing4<T>, profiles: &Profiles4<T>) {
-        let [b, c] = OTHERS[axis];
+    /// One step of E: `E_a = ca E_a + cb (D_b H_c - ratio D_c H_b)`.
+    fn step_e(&mut self, ratios: [T; 3], absorbing: &mut Absorbing4<T>, profiles: &Profiles4<T>) {
         let (plane, [nx, ny, nz]) = (self.stride(0), self.cells);
-        let ratio = T::of(setup.ratio(axis));
-        let mut e = std::mem::take(&mut self.e[axis]);
+        let [mut ex, mut ey, mut ez] = std::mem::take(&mut self.e);
         let this = &*self;
-        let planes = e[plane..].par_chunks_mut(plane).zip(&mut absorbing.e[axis]).enumerate();
-        planes.take(nx).for_each(|(i, (e, memory))| {
+        let [mx, my, mz] = &mut absorbing.e;
+        let planes = ex[plane..].par_chunks_mut(plane).zip(ey[plane..].par_chunks_mut(plane));
+        let planes = planes.zip(ez[plane..].par_chunks_mut(plane)).zip(mx).zip(my).zip(mz).enumerate();
+        planes.take(nx).for_each(|(i, (((((ex, ey), ez), mx), my), mz))| {
             let room = || vec![T::default(); nz];
             let (mut scratch, mut ca, mut cb) = ([room(), room()], room(), room());
-            if axis != 0 && i == 0 {
-                return;
-            }
-            for j in usize::from(axis != 1)..ny {
+            for j in 0..ny {
                 let at = this.place([i, j, 0]);
-                let entries = &this.entry[axis][at..][..nz];
-                for (k, &entry) in entries.iter().enumerate() {
-                    (ca[k], cb[k]) = (this.ca[axis][entry as usize], this.cb[axis][entry as usize]);
+                for (axis, e, memory) in [(0, &mut *ex, &mut *mx), (1, &mut *ey, &mut *my), (2, &mut *ez, &mut *mz)] {
+                    // On the outer walls E stays zero.
+                    if (i == 0 && axis != 0) || (j == 0 && axis != 1) {
+                        continue;
+                    }
+                    let ([b, c], ratio) = (OTHERS[axis], ratios[axis]);
+                    let entries = &this.entry[axis][at..][..nz];
+                    for (k, &entry) in entries.iter().enumerate() {
+                        (ca[k], cb[k]) = (this.ca[axis][entry as usize], this.cb[axis][entry as usize]);
+                    }
+                    let [first, second] = &mut scratch;
+                    for (out, of, along) in [(&mut *first, c, b), (&mut *second, b, c)] {
+                        let stride = this.stride(along);
+                        let row = |by: usize| &this.h[of][at + by * stride - 2 * stride..][..nz];
+                        difference(out, [row(0), row(1), row(2), row(3)]);
+                        let which = usize::from(OTHERS[axis][1] == along);
+                        cut_e(out, &this.h[of], &this.cuts_e[axis][which][i], (j, at, stride));
+                    }
+                    let e = &mut e[at % plane..][..nz];
+                    take_e(e, [&ca, &cb], ratio, first, second);
+                    let factors = [T::of(1.0), T::default() - ratio];
+                    memory.correct(e, &cb, [b, c], factors, &scratch, profiles.e(), [i, j]);
                 }
-                let [first, second] = &mut scratch;
-                for (out, of, along) in [(&mut *first, c, b), (&mut *second, b, c)] {
-                    let stride = this.stride(along);
-                    let row = |by: usize| &this.h[of][at + by * stride - 2 * stride..][..nz];
-                    difference(out, [row(0), row(1), row(2), row(3)]);
-                    let which = usize::from(OTHERS[axis][1] == along);
-                    cut_e(out, &this.h[of], &this.cuts_e[axis][which][i], (j, at, stride));
-                }
-                let e = &mut e[at % plane..][..nz];
-                take_e(e, [&ca, &cb], ratio, first, second);
-                memory.correct(e, &cb, [b, c], [T::of(1.0), T::default() - ratio], &scratch, profiles.e(), [i, j]);
             }
         });
-        self.e[axis] = e;
+        self.e = [ex, ey, ez];
     }
 
     /// Lets the sources act on H or on E.
