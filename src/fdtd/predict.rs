@@ -46,10 +46,10 @@ pub struct TimeShares {
 /// Cells up to which the model itself is tried, and of a part of which a larger one is predicted: what they take no cache
 /// holds any more.
 const MOST_TRIED_CELLS: usize = 8_000_000;
-/// Cell-steps of the longer trial run: some ten milliseconds.
-const TRIAL_CELL_STEPS: usize = 60_000_000;
+/// Cell-steps of the longer trial run: some thirty milliseconds, so that what a run pays once does not drown them.
+const TRIAL_CELL_STEPS: usize = 200_000_000;
 /// Runs of each kind, of which the middle one counts.
-const TRIALS: usize = 5;
+const TRIALS: usize = 3;
 
 /// Memory of the fields and coefficients of a two-dimensional model, bytes.
 ///
@@ -59,7 +59,7 @@ pub fn memory(model: &Model, painted: &Painted, precision: Precision) -> Result<
     Ok(bytes_needed(&Setup::new(model, painted)?, precision))
 }
 
-/// Predicts memory and wall time in single precision, from some steps of the model itself on this machine: about 0.1 s, twice
+/// Predicts memory and wall time in single precision, from some steps of the model itself on this machine: about 0.2 s, twice
 /// to four times as much where effects are to be told apart. A model of more than eight million cells is tried on as many of
 /// its rows as make so many.
 ///
@@ -137,7 +137,7 @@ fn seconds_per_step(fdtd: &Fdtd, model: &Model, setup: &Setup<'_>) -> Result<f64
     let (short, long) = (seconds(pass)?, seconds((1 + passes) * pass)?);
     // A short run that was held up tells nothing.
     let whole = long / ((1 + passes) * pass) as f64;
-    Ok(((long - short) / (passes * pass) as f64).max(0.5 * whole))
+    Ok(((long - short) / (passes * pass) as f64).max(0.2 * whole))
 }
 
 /// As many rows of a large model as are tried, of its commonest kind of material.

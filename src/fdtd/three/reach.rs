@@ -50,6 +50,9 @@ struct Cone {
     high_back: i32,
 }
 
+/// What a row costs beside its nodes, in nodes: coefficients to find, ends that absorb, waiting for memory (two cores of
+/// Zen 5; for predictions only).
+const NODES_OF_A_ROW: usize = 100;
 /// Beyond any grid, and far enough from the limits of the type to be added to.
 const FAR: i32 = i32::MAX / 8;
 
@@ -152,20 +155,45 @@ impl Cones {
     /// beyond.
     pub fn reach(&self) -> Reach {
         let [nx, ny, nz] = self.cells;
-        let steps = self.steps.max(0) as usize;
-        let every = (nx * ny * steps / 4_000_000).max(1);
-        let (mut done, mut counted) = (0, 0);
-        for step in (0..steps).step_by(every) {
-            counted += 1;
-            for i in (0..nx).filter(|&i| self.touches(i, step)) {
-                done += (0..ny).filter_map(|j| self.span(i, j, step)).map(|(_, count)| count).sum::<usize>();
-            }
-        }
-        let all = nx * ny * self.width * counted;
-        let share = if all > 0 { done as f64 / all as f64 } else { 1.0 };
-        let cell_steps = share * (nx * ny * nz) as f64 * (steps + 1) as f64;
+        let Counted { nodes, steps, .. } = self.count();
+        let all = nx * ny * self.width * steps;
+        let share = if all > 0 { nodes as f64 / all as f64 } else { 1.0 };
+        let cell_steps = share * (nx * ny * nz) as f64 * (self.steps.max(0) as usize + 1) as f64;
         Reach { share_saved: 1.0 - share, cell_steps: cell_steps.round() as u64 }
     }
+
+    /// The share of the time of all cell-steps that the rest takes: a row costs what [`NODES_OF_A_ROW`] nodes do, and its
+    /// nodes.
+    pub fn share_of_time(&self) -> f64 {
+        let [nx, ny, _] = self.cells;
+        let Counted { rows, nodes, steps } = self.count();
+        let all = nx * ny * (self.width + NODES_OF_A_ROW) * steps;
+        if all > 0 { (rows * NODES_OF_A_ROW + nodes) as f64 / all as f64 } else { 1.0 }
+    }
+
+    fn count(&self) -> Counted {
+        let [nx, ny, _] = self.cells;
+        let steps = self.steps.max(0) as usize;
+        let every = (nx * ny * steps / 4_000_000).max(1);
+        let mut counted = Counted { rows: 0, nodes: 0, steps: 0 };
+        for step in (0..steps).step_by(every) {
+            counted.steps += 1;
+            for i in (0..nx).filter(|&i| self.touches(i, step)) {
+                for (_, nodes) in (0..ny).filter_map(|j| self.span(i, j, step)) {
+                    counted.rows += 1;
+                    counted.nodes += nodes;
+                }
+            }
+        }
+        counted
+    }
+}
+
+/// What the counted steps touch.
+struct Counted {
+    rows: usize,
+    nodes: usize,
+    steps: usize,
 }
 
 /// Gives every row the least of all values plus the way from there, in rows.

@@ -283,8 +283,10 @@ pub fn memory_three(model: &Model, painted: &Painted3, precision: Precision) -> 
 
 /// Cells of the trial run of a prediction: about as many as the outer cache holds four times over.
 const TRIAL_CELLS: usize = 2_000_000;
+/// Cell-steps of a trial run: a tenth of a second.
+const TRIAL_CELL_STEPS: usize = 100_000_000;
 
-/// Predicts memory and wall time of a three-dimensional run in single precision, from a trial run of some ten milliseconds
+/// Predicts memory and wall time of a three-dimensional run in single precision, from trial runs of about half a second
 /// on this machine: the model itself, cut along x where it is large, for a few steps.
 ///
 /// # Errors
@@ -316,24 +318,31 @@ pub fn predict_three(
     let first = (nx - planes) / 2;
     let piece = painted.cut_x(first..first + planes);
     let fdtd = Fdtd { threads, ..Fdtd::default() };
-    let steps = (2 * TRIAL_CELLS / (planes * ny * nz)).clamp(2 * team::STAGES, 400);
+    let cells = planes * ny * nz;
+    let pass = team::STAGES;
+    let steps = (TRIAL_CELL_STEPS / cells).next_multiple_of(pass).clamp(4 * pass, 400 * pass);
     let mut fastest = |steps: usize| {
         cut.time_window = TimeWindow::Iterations(steps + 1);
         let run = |_| {
             let run = fdtd.solve_stepping_three(&cut, &piece, false, &|_| ControlFlow::Continue(()));
             run.map(|(_, stats)| stats.wall.si())
         };
-        (0..2).map(run).try_fold(f64::INFINITY, |fastest, seconds| Ok::<_, FdtdError>(seconds?.min(fastest)))
+        (0..3).map(run).try_fold(f64::INFINITY, |fastest, seconds| Ok::<_, FdtdError>(seconds?.min(fastest)))
     };
-    // The difference leaves out what a run pays once: starting threads and touching memory for the first time.
-    let (short, long) = (fastest(steps)?, fastest(3 * steps)?);
-    let (marginal, whole) = ((long - short) / (2 * steps) as f64, long / (3 * steps) as f64);
-    let per_step = if marginal > 0.2 * whole { marginal } else { whole };
-    let per_cell = per_step / (planes * ny * nz) as f64;
+    // What a run pays once, above all for touching memory for the first time, shows in the shorter run.
+    let (short, long) = (fastest(pass)?, fastest(pass + steps)?);
+    let per_step = ((long - short) / steps as f64).max(0.2 * long / steps as f64);
+    let once = (short - pass as f64 * per_step).max(0.0) * model.grid.cell_count() as f64 / cells as f64;
+    let per_cell = per_step / cells as f64;
     let cell_steps = model.grid.cell_count() as u64 * setup.iterations as u64;
     // With differences of fourth order every cell makes every step.
     let skips = setup.order == Order::Second;
-    let share_saved = if skips { Cones::new(&setup, true).reach().share_saved } else { 0.0 };
-    let seconds = per_cell * cell_steps as f64 * (1.0 - share_saved);
+    let (share_saved, share_of_time) = if skips {
+        let cones = Cones::new(&setup, true);
+        (cones.reach().share_saved, cones.share_of_time())
+    } else {
+        (0.0, 1.0)
+    };
+    let seconds = once + per_cell * cell_steps as f64 * share_of_time;
     Ok(Prediction { bytes, seconds, cell_steps, share_saved, shares: TimeShares::default() })
 }

@@ -61,6 +61,16 @@ fn relax<T: Real>(relax: Relax<'_, T>) {
     let Relax { e, e_old, memory, each, from, poles, ringing } = relax;
     let n = e.len();
     let e_old = &e_old[..n];
+    // The most common case in one go; the same operations in the same order.
+    if let ([pole], []) = (poles, ringing) {
+        let memory = &mut memory[from..][..n];
+        for k in 0..n {
+            let relaxed = e[k] - pole.give * memory[k];
+            memory[k] = pole.keep * memory[k] + pole.take * (e_old[k] - relaxed);
+            e[k] = relaxed;
+        }
+        return;
+    }
     let (relaxing, resonant) = memory.split_at_mut(each * poles.len());
     for (memory, pole) in relaxing.chunks_exact(each).zip(poles) {
         let memory = &memory[from..][..n];
