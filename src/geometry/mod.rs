@@ -1,5 +1,5 @@
 //! Shapes and where they are: discs and balls, what they share with strips, rectangles and boxes, and the grid of their
-//! neighbours; noise in volumes and on surfaces.
+//! neighbours; noise in volumes and on surfaces; meshes of triangles and where a ball touches them.
 
 mod area;
 mod ball;
@@ -9,6 +9,7 @@ mod half_space;
 mod neighbours;
 mod normal;
 mod segment;
+pub mod triangle_mesh;
 
 pub use area::disc_rectangle_area;
 pub use ball::{ball_box_volume, ball_column_volume};
