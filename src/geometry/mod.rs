@@ -1,4 +1,4 @@
-//! Shapes and where they are: discs and balls, what they share with strips, rectangles and boxes, and the grid of their
+//! Shapes and where they are: discs and balls, what they share with strips, rectangles and boxes, and the grids of their
 //! neighbours; noise in volumes and on surfaces; meshes of triangles and where a ball touches them.
 
 mod area;
@@ -9,6 +9,8 @@ mod half_space;
 mod neighbours;
 mod normal;
 mod segment;
+mod sphere;
+mod sphere_grid;
 pub mod triangle_mesh;
 
 pub use area::disc_rectangle_area;
@@ -18,3 +20,5 @@ pub use fractal::{fractal_surface, fractal_volume};
 pub use half_space::half_space_share;
 pub use neighbours::NeighbourGrid;
 pub use segment::{area_below, area_between};
+pub use sphere::Sphere;
+pub use sphere_grid::SphereGrid;

@@ -144,6 +144,76 @@ pub enum PackingError {
         /// Height of the domain.
         height: Metres,
     },
+    /// A stone that is larger than the box it is to lie in.
+    #[error(
+        "stone larger than the box: stones reach {} but the box is {} by {} by {}\n\nhint: choose a finer grading or a larger box",
+        tenth_of_a_millimetre(*diameter).in_unit("mm"), size[0].in_unit("m"), size[1].in_unit("m"), size[2].in_unit("m")
+    )]
+    StoneLargerThanBox {
+        /// Diameter of the largest stone.
+        diameter: Metres,
+        /// Length, width and height of the box.
+        size: [Metres; 3],
+    },
+    /// Random addition found no room for a sphere.
+    #[error(
+        "no room is left for stone {} of {stones} ({}): {solid_share} of the box is stone, and {wanted} was wanted\n\nhint: random addition of spheres ends near 38%; ask for less, or let them settle with `--method dem`",
+        placed + 1, tenth_of_a_millimetre(*diameter).in_unit("mm")
+    )]
+    BoxIsFull {
+        /// Diameter of the stone that found no room.
+        diameter: Metres,
+        /// Stones placed before it.
+        placed: usize,
+        /// Stones in all.
+        stones: usize,
+        /// Share of the box that is stone (rounded to 0.1 %).
+        solid_share: Share,
+        /// Share that was to be (rounded to 0.1 %).
+        wanted: Share,
+    },
+    /// A sphere of a bed that was read leaves its box.
+    #[error(
+        "stone {number} at x {}, y {}, z {} with radius {} leaves the box of {} by {} by {}",
+        centre[0].in_unit("m"), centre[1].in_unit("m"), centre[2].in_unit("m"), radius.in_unit("mm"),
+        size[0].in_unit("m"), size[1].in_unit("m"), size[2].in_unit("m")
+    )]
+    OutsideBox {
+        /// Number of the sphere, counted from 1.
+        number: usize,
+        /// Its centre.
+        centre: [Metres; 3],
+        /// Its radius.
+        radius: Metres,
+        /// Length, width and height of the box.
+        size: [Metres; 3],
+    },
+    /// A contact of a sphere that is not in the bed.
+    #[error("contact {contact} is one of a stone that is not there: the bed holds {stones} stones")]
+    NoSuchStone {
+        /// Number of the contact, counted from 1.
+        contact: usize,
+        /// Number of stones.
+        stones: usize,
+    },
+    /// A section outside the bed.
+    #[error("the plane {axis} = {} lies outside the bed\n\nhint: take one from 0 m to {}", at.in_unit("m"), limit.in_unit("m"))]
+    PlaneOutside {
+        /// `x` or `y`.
+        axis: &'static str,
+        /// Where the plane lies.
+        at: Metres,
+        /// How far the bed reaches.
+        limit: Metres,
+    },
+    /// A section without a single stone.
+    #[error("the plane {axis} = {} meets no stone\n\nhint: take one further inside", at.in_unit("m"))]
+    EmptySlice {
+        /// `x` or `y`.
+        axis: &'static str,
+        /// Where the plane lies.
+        at: Metres,
+    },
     /// A row of a CSV packing that cannot be read.
     #[error("line {line} of the packing is `{text}`, not a stone\n\nhint: {hint}")]
     BadRow {
@@ -217,4 +287,9 @@ pub(super) fn positive(what: &'static str, value: Metres) -> Result<f64, Packing
 /// A share rounded to 0.1 %, for messages.
 pub(super) fn rounded(share: f64) -> Share {
     format!("{:.1}%", share * 100.0).parse().unwrap_or(Share(share))
+}
+
+/// A length rounded to a tenth of a millimetre, for messages.
+fn tenth_of_a_millimetre(length: Metres) -> Metres {
+    Metres((length.si() * 1e4).round() / 1e4)
 }

@@ -27,6 +27,16 @@ pub enum PlotError {
         /// Height, m.
         height: f64,
     },
+    /// The spheres and what colours them are not as many.
+    #[error("the figure `{title}` has {spheres} spheres, but {values} values to colour them; they must be as many")]
+    SphereValues {
+        /// Title of the figure.
+        title: String,
+        /// Number of spheres.
+        spheres: usize,
+        /// Number of values.
+        values: usize,
+    },
     /// The three columns of a band differ in length.
     #[error("the band `{name}` has {x} abscissae, {lower} lower and {upper} upper values; they must be as many")]
     BandShape {

@@ -1,6 +1,7 @@
 //! Figures, as PNG and SVG.
 //!
-//! Every figure is plain data: a [`Chart`], several of them in [`Panels`], a [`PackingFigure`] or a [`MapFigure`].
+//! Every figure is plain data: a [`Chart`], several of them in [`Panels`], a [`PackingFigure`], a [`SpheresFigure`] or a
+//! [`MapFigure`].
 //! [`Figure::write`] lays it out once on a [`Sheet`] and hands that sheet to the two backends of plotters, so the two
 //! files show the same. All of them share one palette (Okabe and Ito), one embedded font (a subset of DejaVu Sans) and
 //! one set of letter sizes.
@@ -32,6 +33,7 @@ mod path;
 mod place;
 mod render;
 mod sheet;
+mod spheres;
 mod ticks;
 
 pub use axis::{Axis, Scale};
@@ -44,3 +46,4 @@ pub use map::{MapFigure, MapLayer, MapSymbol, SymbolKind};
 pub use packing::PackingFigure;
 pub use panels::Panels;
 pub use sheet::{Anchor, Mark, Rect, Sheet};
+pub use spheres::SpheresFigure;
