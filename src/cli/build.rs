@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use clap::Args;
 
+use crate::cli::cells::Cells;
 use crate::cli::cost_choice;
 use crate::cli::error::CliError;
 use crate::cli::folder;
@@ -17,7 +18,6 @@ use crate::cli::scene_args::SceneArgs;
 use crate::files;
 use crate::forward::Progress;
 use crate::gprmax::{self, InputOptions};
-use crate::model;
 use crate::raster;
 use crate::scene::{self, FoulingAmount, SceneSpec};
 use crate::units::Share;
@@ -142,8 +142,8 @@ pub fn build_folder(
     let mut scene = scene::resolve(spec)?;
     let started = Instant::now();
     let model = raster::build_model(&scene)?;
-    let painted = model::paint(&model)?;
-    if let Some(resolution) = model::Resolution::of(&model, &painted) {
+    let cells = Cells::of(&model)?;
+    if let Some(resolution) = cells.resolution(&model) {
         resolution.check()?;
         if resolution.is_coarse() {
             eprintln!("warning: {resolution}");
@@ -155,10 +155,10 @@ pub fn build_folder(
     let started = Instant::now();
     pack::write_scene(&mut scene, target)?;
     gprmax::write_input(&model, target, "model", &InputOptions { template })?;
-    map_figure::write(&scene, &model, &painted, target)?;
+    map_figure::write(&scene, &model, &cells, target)?;
     let seconds =
         Seconds { packing: scene.packing_seconds, raster: raster_seconds, writing: started.elapsed().as_secs_f64() };
-    let manifest = Manifest::of(&scene, &model, &painted, seconds);
+    let manifest = Manifest::of(&scene, &model, &cells, seconds);
     manifest.write(&target.join(folder::MANIFEST))?;
     Ok(manifest)
 }

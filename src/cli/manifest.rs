@@ -2,10 +2,12 @@
 
 use std::path::Path;
 
+use crate::cli::cells::Cells;
 use crate::cli::error::CliError;
 use crate::cli::folder;
 use crate::files;
-use crate::model::{Effects, Model, Order, Painted};
+use crate::model::{Effects, Model, Order};
+use crate::packing::SphereBed;
 use crate::scene::{Arrivals, BulkPermittivity, FoulingReport, Layer, Scene, SceneSpec};
 
 /// Wall times of a build, s. The only figures of a folder that differ between two builds of the same scene.
@@ -26,10 +28,30 @@ pub struct PackingFigures {
     pub stones: usize,
     /// Height of the highest stone's top, m.
     pub height_m: f64,
-    /// Solid share of the rectangle up to that height, %.
+    /// Solid share of the rectangle or box up to that height, %.
     pub solid_percent: f64,
     /// Solid share in the interior, away from floor and rough surface, %.
     pub interior_solid_percent: f64,
+}
+
+impl PackingFigures {
+    fn of(scene: &Scene) -> Option<Self> {
+        scene.packing.as_ref().map(|packing| Self {
+            stones: packing.count(),
+            height_m: packing.top().si(),
+            solid_percent: 100.0 * packing.solid_share().si(),
+            interior_solid_percent: 100.0 * packing.interior_solid_share().si(),
+        })
+    }
+
+    fn of_spheres(bed: &SphereBed) -> Self {
+        Self {
+            stones: bed.count(),
+            height_m: bed.top().si(),
+            solid_percent: 100.0 * bed.solid_share().si(),
+            interior_solid_percent: 100.0 * bed.interior_solid_share().si(),
+        }
+    }
 }
 
 /// Time window in which an echo is to be looked for, s, from the start of the trace.
@@ -66,8 +88,11 @@ pub struct Manifest {
     pub seed: u64,
     /// The resolved scene, as in `scene.toml`.
     pub scene: SceneSpec,
-    /// What the packing came to; absent for a homogeneous bed.
+    /// What the discs came to; absent for a homogeneous bed and in space.
     pub packing: Option<PackingFigures>,
+    /// What the bed of spheres came to, where there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spheres: Option<PackingFigures>,
     /// The fouling in every measure; absent for clean ballast.
     pub fouling: Option<FoulingReport>,
     /// Bulk permittivities, as a mixture and as a 2-D section behaves.
@@ -94,18 +119,14 @@ pub struct Manifest {
 
 impl Manifest {
     /// Collects the figures of a built scene.
-    pub fn of(scene: &Scene, model: &Model, painted: &Painted, seconds: Seconds) -> Self {
+    pub fn of(scene: &Scene, model: &Model, cells: &Cells, seconds: Seconds) -> Self {
         Self {
             format_version: 1,
             program: folder::program(),
             seed: scene.spec.seed,
             scene: scene.spec.clone(),
-            packing: scene.packing.as_ref().map(|packing| PackingFigures {
-                stones: packing.discs.len(),
-                height_m: packing.top().si(),
-                solid_percent: 100.0 * packing.solid_share().si(),
-                interior_solid_percent: 100.0 * packing.interior_solid_share().si(),
-            }),
+            packing: PackingFigures::of(scene),
+            spheres: scene.spheres.as_ref().map(PackingFigures::of_spheres),
             fouling: scene.fouling.clone(),
             bulk_permittivity: scene.bulk.clone(),
             layers: scene.layers.clone(),
@@ -115,14 +136,14 @@ impl Manifest {
             time_step: model.time_step(),
             iterations: model.iterations(),
             order: model.order,
-            effects: Effects::of(model, painted),
+            effects: cells.effects(model),
             seconds,
         }
     }
 
     /// One line for people.
     pub fn summary(&self) -> String {
-        let stones = self.packing.as_ref().map_or("homogeneous bed".to_string(), |packing| {
+        let stones = self.packing.as_ref().or(self.spheres.as_ref()).map_or("homogeneous bed".to_string(), |packing| {
             format!(
                 "{} stones, {:.1} cm, {:.1} % solid",
                 packing.stones,
@@ -132,7 +153,9 @@ impl Manifest {
         });
         let fouling =
             self.fouling.as_ref().map_or("clean".to_string(), |f| format!("fouled to {}", f.height.in_unit("cm")));
-        format!("{stones}, {fouling}, {} x {} cells", self.cells[0], self.cells[1])
+        let [nx, ny, nz] = self.cells;
+        let deep = if nz > 1 { format!(" x {nz}") } else { String::new() };
+        format!("{stones}, {fouling}, {nx} x {ny}{deep} cells")
     }
 
     /// Writes the manifest.

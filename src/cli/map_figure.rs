@@ -2,20 +2,21 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::cli::cells::Cells;
 use crate::cli::error::CliError;
-use crate::model::{Model, Painted};
+use crate::model::Model;
 use crate::plot::{Figure as _, MapFigure, MapLayer, MapSymbol, SymbolKind};
-use crate::raster::{self, Placement};
+use crate::raster::Placement;
 use crate::scene::Scene;
 
 /// Draws the map of a scene into its folder: `map.png` and `map.svg`.
 ///
 /// # Errors
 /// When a file cannot be written.
-pub fn write(scene: &Scene, model: &Model, painted: &Painted, folder: &Path) -> Result<Vec<PathBuf>, CliError> {
-    let map = raster::permittivity_map(model, painted, scene.spec.antenna.frequency);
+pub fn write(scene: &Scene, model: &Model, cells: &Cells, folder: &Path) -> Result<Vec<PathBuf>, CliError> {
+    let map = cells.map(scene, model);
     let values = map.iter().map(|eps| *eps as f32).collect();
-    let [nx, ny] = painted.cells_xy;
+    let (nx, ny) = map.dim();
     let [dx, dy, _] = model.grid.spacing;
     let mut figure = MapFigure::new(&scene.spec.title, values, [nx, ny], [nx as f64 * dx, ny as f64 * dy]);
     let pml = model.absorbing_cells().map(|cells| cells as f64);

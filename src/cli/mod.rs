@@ -3,6 +3,7 @@
 mod batch;
 mod bscan;
 mod build;
+mod cells;
 mod checkpoint;
 mod child;
 mod compare;
@@ -19,6 +20,7 @@ mod interrupt;
 mod manifest;
 mod map_figure;
 mod pack;
+mod pack_spheres;
 mod progress;
 mod run;
 mod scene_args;

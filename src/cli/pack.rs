@@ -6,6 +6,7 @@ use clap::Args;
 
 use crate::cli::error::CliError;
 use crate::cli::folder;
+use crate::cli::pack_spheres;
 use crate::cli::progress::Bar;
 use crate::cli::scene_args::SceneArgs;
 use crate::cli::table::Report;
@@ -57,10 +58,13 @@ pub fn run(args: &PackArgs) -> Result<(), CliError> {
     let mut spec = args.args.spec(args.scene.as_deref())?;
     let calibration = args.calibrate.then(|| refit(&mut spec, args.json)).transpose()?;
     let mut scene = scene::resolve(&spec)?;
-    if let (Some(folder), Some(_)) = (&args.out, &scene.packing) {
+    if let (Some(folder), true) = (&args.out, scene.packing.is_some() || scene.spheres.is_some()) {
         scene.spec.to_toml()?;
         folder::prepare(folder, args.force)?;
         write_scene(&mut scene, folder)?;
+    }
+    if let Some(bed) = &scene.spheres {
+        return pack_spheres::print(&scene, bed, args.json);
     }
     let packing = scene.packing.as_ref().ok_or_else(|| {
         CliError::input("this scene has no stones (`method = \"homogeneous\"`)\n\nhint: leave `--homogeneous` out")
@@ -104,7 +108,7 @@ fn refit(spec: &mut SceneSpec, json: bool) -> Result<serde_json::Value, CliError
 }
 
 /// A share in percent, without the sign that a zero may carry.
-fn percent(share: Share) -> f64 {
+pub fn percent(share: Share) -> f64 {
     100.0 * share.si() + 0.0
 }
 
@@ -117,12 +121,16 @@ pub fn write_scene(scene: &mut Scene, folder: &Path) -> Result<(), CliError> {
     if scene.spec.packing.method == PackingMethod::File {
         scene.spec.packing.file = Some(PACKING.into());
     }
+    if let Some(bed) = &scene.spheres {
+        files::write_bytes(&folder.join(folder::SCENE), scene.spec.to_toml()?.as_bytes())?;
+        return pack_spheres::write(scene, bed, folder);
+    }
     files::write_bytes(&folder.join(folder::SCENE), scene.spec.to_toml()?.as_bytes())?;
     write_packing(scene, folder)
 }
 
 /// Name of the packing that keeps every bit.
-const PACKING: &str = "packing.json";
+pub const PACKING: &str = "packing.json";
 
 /// Writes every file of a scene's packing into its folder; nothing for a homogeneous bed.
 ///
@@ -162,7 +170,7 @@ fn discs(packing: &Packing) -> Vec<[f64; 3]> {
     packing.discs.iter().map(|disc| [disc.x, disc.y, disc.radius]).collect()
 }
 
-fn packing_figure(packing: &Packing, outcome: Option<&RsaOutcome>) -> PackingFigure {
+pub fn packing_figure(packing: &Packing, outcome: Option<&RsaOutcome>) -> PackingFigure {
     let title = format!(
         "{} stones, {:.1} cm, {:.1} % solid",
         packing.count(),
@@ -180,7 +188,7 @@ fn packing_figure(packing: &Packing, outcome: Option<&RsaOutcome>) -> PackingFig
 }
 
 /// Input and output sieve curves, as in the paper's Fig. 8, with the standard's band where there is one.
-fn grading_chart(grading: &Grading, rows: &[GradingRow]) -> Chart {
+pub fn grading_chart(grading: &Grading, rows: &[GradingRow]) -> Chart {
     let mm = |row: &GradingRow| 1e3 * row.sieve.si();
     let sieves = Axis { ticks: rows.iter().map(mm).collect(), ..Axis::log10("sieve", "mm") };
     let mut chart = Chart::new("Sieve curve", sieves, Axis::linear("passing", "%").between(0.0, 100.0))

@@ -9,7 +9,8 @@ use crate::cli::folder;
 use crate::model::Order;
 use crate::packing::{ClassReading, Grading, PackingError};
 use crate::scene::{
-    EquivalentStone, FoulingAmount, FoulingSpec, GeometryKind, GradingSpec, PackingMethod, SceneSpec, Smoothing,
+    Dimension, EquivalentStone, FoulingAmount, FoulingSpec, GeometryKind, GradingSpec, PackingMethod, SceneSpec,
+    Smoothing,
 };
 use crate::units::{Hertz, Metres, Seconds, Share};
 
@@ -35,9 +36,19 @@ pub struct SceneArgs {
     /// Which sizes a retained fraction fills: `en-933-1` (between its sieve and the next larger one) or `one-sieve-up`.
     #[arg(long, value_name = "READING")]
     pub class_reading: Option<String>,
-    /// Discs to use in place of a new packing: CSV `x,y,radius` in metres, or JSON written by `pack`.
-    #[arg(long, value_name = "FILE")]
+    /// How the stones come about: `rsa` (discs, Benedetto et al. 2018) or `random-addition` (loose spheres in space); or a
+    /// file with stones: CSV `x,y,radius` or `x,y,z,radius` in metres, or JSON written by `pack`.
+    #[arg(long, visible_alias = "method", value_name = "METHOD|FILE")]
     pub packing: Option<PathBuf>,
+    /// Inner length, depth and height of the tank: 1.5x1.5x0.5m.
+    #[arg(long = "box", value_name = "LxDxH")]
+    pub box_size: Option<BoxSize>,
+    /// Dimensions of the waves: 2 is a section, of a bed of spheres the one at `--slice`; 3 is the whole bed [default: 2].
+    #[arg(long, value_name = "2|3")]
+    pub dimension: Option<Dimension>,
+    /// Where the section cuts a bed of spheres, from its front [default: the middle].
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    pub slice: Option<Metres>,
     /// No stones: each layer holds the effective permittivity of its mixture.
     #[arg(long, conflicts_with = "packing")]
     pub homogeneous: bool,
@@ -66,6 +77,32 @@ pub struct SceneArgs {
     /// Order of the differences in space: 2, as gprMax [default], or 4 (built-in solver only).
     #[arg(long, value_name = "2|4")]
     pub order: Option<Order>,
+}
+
+/// Length, depth and height of a box, written `1.5x1.5x0.5m`: a length without a unit has that of the next.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BoxSize(pub [Metres; 3]);
+
+impl std::str::FromStr for BoxSize {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let mut lengths = [Metres(0.0); 3];
+        let mut unit = "";
+        let parts: Vec<&str> = text.split('x').map(str::trim).collect();
+        let wrong = || format!("`{text}` is not a box: write length, depth and height as `1.5x1.5x0.5m`");
+        if parts.len() != 3 {
+            return Err(wrong());
+        }
+        for (length, part) in lengths.iter_mut().zip(parts).rev() {
+            let digits = part.trim_end_matches(|c: char| c.is_alphabetic()).len();
+            if digits < part.len() {
+                unit = &part[digits..];
+            }
+            *length = format!("{}{unit}", &part[..digits]).parse().map_err(|_| wrong())?;
+        }
+        Ok(Self(lengths))
+    }
 }
 
 /// See [`GeometryKind`].
@@ -125,9 +162,21 @@ impl SceneArgs {
         if let Some(reading) = &self.class_reading {
             spec.packing.class_reading = read_reading(reading)?;
         }
-        if let Some(file) = &self.packing {
-            spec.packing.method = PackingMethod::File;
-            spec.packing.file = Some(file.clone());
+        match self.packing.as_deref().map(|path| (path.to_str(), path)) {
+            None => {}
+            Some((Some("rsa"), _)) => spec.packing.method = PackingMethod::Rsa,
+            Some((Some("random-addition"), _)) => spec.packing.method = PackingMethod::RandomAddition,
+            Some((_, file)) => {
+                spec.packing.method = PackingMethod::File;
+                spec.packing.file = Some(file.into());
+            }
+        }
+        if let Some(BoxSize([length, depth, height])) = self.box_size {
+            (spec.tank.width, spec.tank.depth, spec.tank.height) = (length, Some(depth), height);
+        }
+        set(&mut spec.grid.dimension, self.dimension);
+        if self.slice.is_some() {
+            spec.packing.slice = self.slice;
         }
         if self.homogeneous {
             spec.packing.method = PackingMethod::Homogeneous;
@@ -198,5 +247,21 @@ fn read_reading(text: &str) -> Result<ClassReading, CliError> {
         _ => Err(CliError::input(format!(
             "there is no class reading `{text}`\n\nhint: write `--class-reading en-933-1` or `--class-reading one-sieve-up`"
         ))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_box_is_read_with_one_unit_or_three() {
+        let read = |text: &str| text.parse::<BoxSize>();
+        assert_eq!(read("1.5x1.5x0.5m"), Ok(BoxSize([Metres(1.5), Metres(1.5), Metres(0.5)])));
+        assert_eq!(read("1m x 50cm x 480 mm"), Ok(BoxSize([Metres(1.0), Metres(0.5), Metres(0.48)])));
+        for wrong in ["1.5x1.5m", "1x1x1", "axbxcm", ""] {
+            let message = format!("`{wrong}` is not a box: write length, depth and height as `1.5x1.5x0.5m`");
+            assert_eq!(read(wrong), Err(message));
+        }
     }
 }

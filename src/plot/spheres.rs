@@ -163,7 +163,7 @@ impl Figure for SpheresFigure {
         let aside = Rect::new(front.right() + LEFT + 16.0, front.y, side(width), front.height);
         let above = Rect::new(front.x, front.bottom() + BELOW + ABOVE, front.width, side(width));
         let bar = Rect::new(aside.x, above.y, BAR, above.height.max(100.0));
-        let whole = [aside.right().max(bar.x + 180.0) + BORDER, above.bottom().max(bar.bottom()) + BELOW];
+        let whole = [(aside.right() + 14.0).max(bar.x + 180.0) + BORDER, above.bottom().max(bar.bottom()) + BELOW];
         let mut sheet = Sheet::new(&self.title, whole[0], whole[1]);
         sheet.title([whole[0] / 2.0, BORDER + TITLE_SIZE], &self.title, TITLE_SIZE, whole[0] - 2.0 * BORDER);
         for (frame, view) in [front, aside, above].iter().zip(&VIEWS) {

@@ -8,7 +8,7 @@ use crate::model::{
     Averaging, Axis, DebyePole, Excitation, HertzianDipole, Material, MaterialId, Model, Object, Receiver, Source,
     TimeWindow, Voxels, Waveform,
 };
-use crate::scene::{GeometryKind, Medium, PackingMethod, Scene, Smoothing};
+use crate::scene::{Dimension, GeometryKind, Medium, PackingMethod, Scene, Smoothing};
 
 use super::discs::{Block, centres, shares};
 use super::placement::Placement;
@@ -26,7 +26,7 @@ pub enum RasterError {
     AreaNeedsVoxels,
     /// More cells than can be counted sensibly.
     #[error(
-        "cells of {cell} m make a grid of {nx} x {ny} cells, the limit is {limit} in all\n\nhint: use larger cells with `--cell`"
+        "cells of {cell} m make a grid of {nx} x {ny} x {nz} cells, the limit is {limit} in all\n\nhint: use larger cells with `--cell`"
     )]
     TooManyCells {
         /// Cell size, m.
@@ -35,12 +35,14 @@ pub enum RasterError {
         nx: usize,
         /// Cells along y.
         ny: usize,
+        /// Cells along z.
+        nz: usize,
         /// The limit.
         limit: usize,
     },
 }
 
-/// Most cells of a two-dimensional model: 40 GB of fields and coefficients, beyond any sensible 2-D section.
+/// Most cells of a model: 40 GB of fields and coefficients in a section, beyond any sensible one; more in space.
 const MOST_CELLS: usize = 2_000_000_000;
 
 /// Builds the model of a scene: metal plate, walls and base, bed, antenna.
@@ -50,21 +52,26 @@ const MOST_CELLS: usize = 2_000_000_000;
 pub fn build_model(scene: &Scene) -> Result<Model, RasterError> {
     let spec = &scene.spec;
     let placement = Placement::of(spec);
-    let [nx, ny, _] = placement.grid.cells;
-    if nx.saturating_mul(ny) > MOST_CELLS {
-        return Err(RasterError::TooManyCells { cell: spec.grid.cell.si(), nx, ny, limit: MOST_CELLS });
+    let [nx, ny, nz] = placement.grid.cells;
+    if nx.saturating_mul(ny).saturating_mul(nz) > MOST_CELLS {
+        return Err(RasterError::TooManyCells { cell: spec.grid.cell.si(), nx, ny, nz, limit: MOST_CELLS });
     }
+    let in_space = spec.grid.dimension == Dimension::Three;
     let mut model = Model::new(spec.title.clone(), placement.grid, TimeWindow::Seconds(spec.grid.time_window.si()));
     model.order = spec.grid.order;
-    if spec.grid.smoothing == Smoothing::Shapes {
-        model.averaging = Averaging::Shapes;
+    match spec.grid.smoothing {
+        Smoothing::Shapes => model.averaging = Averaging::Shapes,
+        // In space a cell has no share of its own: each edge takes the mean over its box.
+        Smoothing::Area if in_space => model.averaging = Averaging::Volumes,
+        _ => {}
     }
     model.pml_cells = Some(placement.absorbing_cells);
     let mut builder = Builder { model, averaging: spec.grid.smoothing != Smoothing::None, known: HashMap::new() };
     builder.tank(scene, &placement);
     match spec.packing.method {
         PackingMethod::Homogeneous => builder.homogeneous_bed(scene, &placement),
-        PackingMethod::Rsa | PackingMethod::File => builder.stones(scene, &placement)?,
+        _ if in_space => builder.spheres(scene, &placement),
+        _ => builder.stones(scene, &placement)?,
     }
     builder.antenna(scene, &placement);
     Ok(builder.model)
@@ -108,11 +115,16 @@ impl Builder {
         id
     }
 
+    /// A box through the whole depth of the model.
     fn add_box(&mut self, x: [f64; 2], y: [f64; 2], material: MaterialId) {
-        let depth = self.model.grid.spacing[2];
+        let depth = self.model.grid.cells[2] as f64 * self.model.grid.spacing[2];
+        self.add_solid(x, y, [0.0, depth], material);
+    }
+
+    fn add_solid(&mut self, x: [f64; 2], y: [f64; 2], z: [f64; 2], material: MaterialId) {
         self.model.objects.push(Object::Box {
-            lower: [x[0], y[0], 0.0],
-            upper: [x[1], y[1], depth],
+            lower: [x[0], y[0], z[0]],
+            upper: [x[1], y[1], z[1]],
             material,
             averaging: self.averaging && material != MaterialId::PEC,
         });
@@ -128,28 +140,36 @@ impl Builder {
         }
         let wall_material = self.material(&scene.wall);
         let (wall, right) = (tank.wall.si(), left + tank.width.si());
+        let [front, back] = bed_depth(scene, placement);
+        // In a section the one cell is all the depth there is.
+        let outer = if placement.front > 0.0 { [front - wall, back + wall] } else { [front, back] };
         if tank.base.si() > 0.0 {
-            self.add_box([left - wall, right + wall], [floor - tank.base.si(), floor], wall_material);
+            self.add_solid([left - wall, right + wall], [floor - tank.base.si(), floor], outer, wall_material);
         }
         if wall > 0.0 {
             let top = floor + tank.height.si();
-            self.add_box([left - wall, left], [floor, top], wall_material);
-            self.add_box([right, right + wall], [floor, top], wall_material);
+            self.add_solid([left - wall, left], [floor, top], outer, wall_material);
+            self.add_solid([right, right + wall], [floor, top], outer, wall_material);
+            if placement.front > 0.0 {
+                self.add_solid([left, right], [floor, top], [front - wall, front], wall_material);
+                self.add_solid([left, right], [floor, top], [back, back + wall], wall_material);
+            }
         }
     }
 
     fn homogeneous_bed(&mut self, scene: &Scene, placement: &Placement) {
         let [left, floor] = placement.bed_origin;
         let x = [left, left + scene.spec.tank.width.si()];
+        let z = bed_depth(scene, placement);
         let middle = floor + scene.bed.fouled_height;
         let top = floor + scene.spec.tank.height.si();
         if middle > floor {
             let fouled = self.material(&scene.bed.bulk_fouled);
-            self.add_box(x, [floor, middle], fouled);
+            self.add_solid(x, [floor, middle], z, fouled);
         }
         if top > middle {
             let clean = self.material(&scene.bed.bulk_clean);
-            self.add_box(x, [middle, top], clean);
+            self.add_solid(x, [middle, top], z, clean);
         }
     }
 
@@ -162,19 +182,40 @@ impl Builder {
         Ok(())
     }
 
-    /// Voids as boxes, then every stone as a cylinder. A stone belongs to the zone that its centre lies in.
-    fn cylinders(&mut self, scene: &Scene, placement: &Placement) {
+    /// What fills the voids, zone by zone, as boxes.
+    fn voids(&mut self, scene: &Scene, placement: &Placement) {
         let [left, floor] = placement.bed_origin;
-        let (bed, depth) = (&scene.bed, self.model.grid.spacing[2]);
+        let bed = &scene.bed;
         let x = [left, left + scene.spec.tank.width.si()];
+        let z = bed_depth(scene, placement);
         if bed.fouled_height > 0.0 {
             let fines = self.material(&bed.void_fouled);
-            self.add_box(x, [floor, floor + bed.fouled_height], fines);
+            self.add_solid(x, [floor, floor + bed.fouled_height], z, fines);
         }
         if !bed.void_clean.is_air() {
             let void = self.material(&bed.void_clean);
-            self.add_box(x, [floor + bed.fouled_height, floor + scene.spec.tank.height.si()], void);
+            self.add_solid(x, [floor + bed.fouled_height, floor + scene.spec.tank.height.si()], z, void);
         }
+    }
+
+    /// The voids, then every stone as a ball. A stone belongs to the zone that its centre lies in.
+    fn spheres(&mut self, scene: &Scene, placement: &Placement) {
+        self.voids(scene, placement);
+        let ([left, floor], bed) = (placement.bed_origin, &scene.bed);
+        for sphere in scene.spheres.iter().flat_map(|bed| &bed.spheres) {
+            let [x, y, z] = sphere.centre;
+            let material = self.material(if z < bed.fouled_height { &bed.stone_fouled } else { &bed.stone_clean });
+            let centre = [left + x, floor + z, placement.front + y];
+            let averaging = self.averaging;
+            self.model.objects.push(Object::Sphere { centre, radius: sphere.radius, material, averaging });
+        }
+    }
+
+    /// The voids, then every stone as a cylinder. A stone belongs to the zone that its centre lies in.
+    fn cylinders(&mut self, scene: &Scene, placement: &Placement) {
+        self.voids(scene, placement);
+        let [left, floor] = placement.bed_origin;
+        let (bed, depth) = (&scene.bed, self.model.grid.spacing[2]);
         for disc in scene.discs() {
             let stone = if disc.y < bed.fouled_height { &bed.stone_fouled } else { &bed.stone_clean };
             let material = self.material(stone);
@@ -249,6 +290,14 @@ impl Builder {
             excitation: Excitation { start: 0.0, stop: None },
         }));
         self.model.receivers.push(Receiver { position: placement.receiver, name: None });
+    }
+}
+
+/// From where to where the bed reaches along z; in a section the one cell.
+fn bed_depth(scene: &Scene, placement: &Placement) -> [f64; 2] {
+    match scene.spec.grid.dimension {
+        Dimension::Two => [0.0, placement.grid.spacing[2]],
+        Dimension::Three => [placement.front, placement.front + scene.spec.tank.inner_depth().si()],
     }
 }
 

@@ -2,25 +2,36 @@
 
 use ndarray::Array2;
 
-use crate::model::{Model, Painted};
+use crate::model::{Material, Model, Painted, Painted3};
 use crate::units::Hertz;
 
 /// Relative permittivity (real part) of every cell at a frequency, shape `(nx, ny)`, y upwards; infinite in a perfect
 /// conductor.
 pub fn permittivity_map(model: &Model, painted: &Painted, frequency: Hertz) -> Array2<f64> {
-    let eps: Vec<f64> = model
-        .materials
-        .iter()
-        .map(|material| if material.is_pec() { f64::INFINITY } else { material.eps_r_at(frequency.si()) })
-        .collect();
+    let eps = permittivities(model, frequency);
     let [nx, ny] = painted.cells_xy;
     Array2::from_shape_fn((nx, ny), |(i, j)| eps[painted.solid[i * ny + j].index()])
+}
+
+/// The same of the cells of a model in space that lie at `z`, m; at its border where `z` lies beyond it.
+pub fn permittivity_section(model: &Model, painted: &Painted3, z: f64, frequency: Hertz) -> Array2<f64> {
+    let eps = permittivities(model, frequency);
+    let [nx, ny, nz] = painted.cells;
+    let k = ((z / model.grid.spacing[2]).max(0.0) as usize).min(nz - 1);
+    Array2::from_shape_fn((nx, ny), |(i, j)| eps[painted.solid[(i * ny + j) * nz + k].index()])
+}
+
+fn permittivities(model: &Model, frequency: Hertz) -> Vec<f64> {
+    let of = |material: &Material| {
+        if material.is_pec() { f64::INFINITY } else { material.eps_r_at(frequency.si()) }
+    };
+    model.materials.iter().map(of).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{DebyePole, Grid, Material, MaterialId, Object, TimeWindow, paint};
+    use crate::model::{DebyePole, Grid, MaterialId, Object, TimeWindow, paint};
 
     /// A conductor below, water above: infinite, and 4.9 + 75.2 / (1 + (2 pi 17.24 GHz 9.231 ps)²) = 42.5 half relaxed.
     #[test]

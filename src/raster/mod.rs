@@ -6,5 +6,5 @@ mod map;
 mod placement;
 
 pub use build::{RasterError, antenna_alone, build_model};
-pub use map::permittivity_map;
+pub use map::{permittivity_map, permittivity_section};
 pub use placement::Placement;

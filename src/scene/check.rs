@@ -31,6 +31,19 @@ pub(super) fn check(spec: &SceneSpec) -> Result<(), SceneError> {
         "above 0 ns",
         "`--time-window 25ns`",
     )?;
+    if let Some(depth) = tank.depth {
+        positive("tank.depth", depth, "`depth = \"0.5 m\"` under `[tank]`")?;
+    }
+    if let Some(slice) = spec.packing.slice {
+        let depth = tank.inner_depth();
+        require(
+            (0.0..=depth.si()).contains(&slice.si()),
+            "packing.slice",
+            &slice,
+            &format!("within the tank (0 m to {depth})"),
+            "leave it out for the middle",
+        )?;
+    }
     let widest = tank.width.si().min(tank.height.si());
     require(
         spec.grid.cell.si() <= widest / 10.0,

@@ -79,6 +79,30 @@ pub enum SceneError {
         /// Width of the tank.
         tank: Metres,
     },
+    /// A bed of spheres in another box than the tank.
+    #[error(
+        "the bed is {length} long and {width} deep, the tank {} and {}\n\nhint: write `width = \"{length}\"` and `depth = \"{width}\"` under `[tank]`",
+        tank[0], tank[1]
+    )]
+    BedSize {
+        /// Length of the bed.
+        length: Metres,
+        /// Width of the bed.
+        width: Metres,
+        /// Width and depth of the tank.
+        tank: [Metres; 2],
+    },
+    /// A bed without walls in a tank with them.
+    #[error("the bed repeats itself, and the tank has walls\n\nhint: pack it without `--periodic`")]
+    PeriodicBed,
+    /// Discs where spheres are needed.
+    #[error(
+        "the packing `{method}` is one of discs, and space has three dimensions\n\nhint: `--dimension 2`, or spheres: `--method dem` or `--method random-addition`"
+    )]
+    DiscsInSpace {
+        /// The method.
+        method: &'static str,
+    },
     /// `method = "file"` without a file.
     #[error(
         "`packing.method` is \"file\", but `packing.file` names no file\n\nhint: add `file = \"packing.csv\"` under `[packing]`"

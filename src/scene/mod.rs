@@ -11,6 +11,7 @@ mod fouling;
 mod medium;
 mod mixture;
 mod resolve;
+mod sample;
 mod spec;
 
 pub use arrivals::{Arrivals, Layer, arrivals};
@@ -18,8 +19,8 @@ pub use bed::{Bed, BulkPermittivity};
 pub use error::SceneError;
 pub use fouling::{FoulingAmount, FoulingReport};
 pub use medium::{MaterialSpec, Medium};
-pub use resolve::{Scene, resolve, rsa_input};
+pub use resolve::{Scene, resolve, resolve_with, rsa_input};
 pub use spec::{
-    AntennaSpec, EquivalentStone, FoulingSpec, GeometryKind, GradingSpec, GridSpec, MoistureSpec, PackingMethod,
-    PackingSpec, SceneSpec, Smoothing, TankSpec,
+    AntennaSpec, Dimension, EquivalentStone, FoulingSpec, GeometryKind, GradingSpec, GridSpec, MoistureSpec,
+    PackingMethod, PackingSpec, SceneSpec, Smoothing, TankSpec,
 };

@@ -1,12 +1,10 @@
 //! From what the user wrote to a checked and packed scene.
 
-use std::path::Path;
 use std::time::Instant;
 
-use crate::files;
 use crate::geometry::{Disc, disc_rectangle_area};
 use crate::material::{self, BottomFilledBed, FoulingIndices};
-use crate::packing::{self, Packing, Porosity, RsaInput, RsaOutcome};
+use crate::packing::{Packing, Porosity, RsaInput, RsaOutcome, SphereBed};
 use crate::units::constants::C0;
 use crate::units::{KilogramsPerCubicMetre, Metres, Seconds, Share};
 
@@ -17,7 +15,8 @@ use super::error::SceneError;
 use super::fouling::{FoulingAmount, FoulingReport};
 use super::medium::{MaterialSpec, Medium};
 use super::mixture;
-use super::spec::{FoulingSpec, GradingSpec, PackingMethod, SceneSpec};
+use super::sample::{self, Sample};
+use super::spec::{FoulingSpec, GradingSpec, SceneSpec, TankSpec};
 
 /// A scene, checked once, with its packing and the figures derived from it.
 #[derive(Debug, Clone)]
@@ -26,8 +25,10 @@ pub struct Scene {
     pub spec: SceneSpec,
     /// The random sequential adsorption, where there was one.
     pub adsorption: Option<RsaOutcome>,
-    /// The packing; absent for a homogeneous bed.
+    /// The discs: the packing, or the section through a bed of spheres; absent for a homogeneous bed and in space.
     pub packing: Option<Packing>,
+    /// The bed of spheres, where there is one; also when the scene is a section through it.
+    pub spheres: Option<SphereBed>,
     /// Walls and base.
     pub wall: Medium,
     /// What lies where in the bed.
@@ -45,7 +46,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// The stones; empty for a homogeneous bed. Origin: left lower corner of the bed.
+    /// The stones of a section; empty for a homogeneous bed and in space. Origin: left lower corner of the bed.
     pub fn discs(&self) -> &[Disc] {
         self.packing.as_ref().map_or(&[], |packing| packing.discs.as_slice())
     }
@@ -81,6 +82,14 @@ impl Scene {
 /// # Errors
 /// See [`SceneError`].
 pub fn resolve(spec: &SceneSpec) -> Result<Scene, SceneError> {
+    resolve_with(spec, None)
+}
+
+/// As [`resolve`], with a bed of spheres that has been made already in place of the one that the scene would make or read.
+///
+/// # Errors
+/// See [`SceneError`].
+pub fn resolve_with(spec: &SceneSpec, spheres: Option<SphereBed>) -> Result<Scene, SceneError> {
     let mut spec = spec.clone();
     check(&spec)?;
     let voids = Porosity::new(spec.packing.voids)?;
@@ -91,23 +100,13 @@ pub fn resolve(spec: &SceneSpec) -> Result<Scene, SceneError> {
     let (bed, bulk) = mixture::bed(&spec, fouled_height)?;
     let layers = layers(&spec, &bed, &wall);
     let started = Instant::now();
-    let adsorption = match spec.packing.method {
-        PackingMethod::Rsa => Some(packing::pack(&rsa_input(&spec, voids)?, spec.seed)?),
-        PackingMethod::Homogeneous | PackingMethod::File => None,
-    };
-    let packing = match (&adsorption, spec.packing.method) {
-        (Some(outcome), _) => Some(outcome.after.clone()),
-        (None, PackingMethod::File) => {
-            let file = spec.packing.file.as_ref().ok_or(SceneError::NoPackingFile)?;
-            Some(read_packing(file, spec.tank.width)?)
-        }
-        (None, _) => None,
-    };
+    let Sample { adsorption, packing, spheres } = sample::take(&spec, voids, spheres)?;
     let packing_seconds = started.elapsed().as_secs_f64();
     let fouling = spec.fouling.as_ref().filter(|_| fouled_height > 0.0);
-    let fouling = fouling.map(|fouling| report(&spec, fouling, fouled_height, packing.as_ref())).transpose()?;
+    let stones = Stones { packing: packing.as_ref(), spheres: spheres.as_ref() };
+    let fouling = fouling.map(|fouling| report(&spec, fouling, fouled_height, stones)).transpose()?;
     let arrivals = arrivals(spec.antenna.height, &layers);
-    Ok(Scene { adsorption, packing, wall, bed, bulk, layers, arrivals, fouling, packing_seconds, spec })
+    Ok(Scene { adsorption, packing, spheres, wall, bed, bulk, layers, arrivals, fouling, packing_seconds, spec })
 }
 
 /// The input of the adsorption that a scene asks for.
@@ -124,24 +123,6 @@ pub fn rsa_input(spec: &SceneSpec, voids: Porosity) -> Result<RsaInput, SceneErr
         input: spec.packing.input,
         strip: spec.packing.strip,
     })
-}
-
-/// Stones of a packing from outside may be this deep in one another, m: coordinates rounded to a tenth of a millimetre.
-const FOREIGN_OVERLAP: Metres = Metres(2e-4);
-
-/// Reads a packing: JSON as this program writes it, else CSV `x,y,radius` in metres. Its height is that of its stones.
-fn read_packing(file: &Path, width: Metres) -> Result<Packing, SceneError> {
-    let text = files::read_text(file)?;
-    if file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
-        let packing = packing::export::from_json(&text, FOREIGN_OVERLAP)?;
-        if (packing.width.si() - width.si()).abs() > 1e-9 {
-            return Err(SceneError::PackingWidth { file: file.into(), packing: packing.width, tank: width });
-        }
-        return Ok(packing);
-    }
-    let free = packing::export::from_csv(&text, None, FOREIGN_OVERLAP)?;
-    let height = free.top();
-    Ok(packing::export::from_csv(&text, Some((width, height)), FOREIGN_OVERLAP)?)
 }
 
 /// Puts every material that the scene names into its table, so that the file that is kept holds all values.
@@ -235,7 +216,7 @@ fn report(
     spec: &SceneSpec,
     fouling: &FoulingSpec,
     fouled_height: f64,
-    packing: Option<&Packing>,
+    stones: Stones<'_>,
 ) -> Result<FoulingReport, SceneError> {
     let bed = bottom_filled(spec, fouling);
     let in_full_voids = material::FoulingAmount::Height(Metres(fouled_height * fouling.filling.si()));
@@ -243,17 +224,14 @@ fn report(
         height_percent: 100.0 * fouled_height / spec.tank.height.si(),
         ..bed.indices(in_full_voids, Some(fouling.passing))?
     };
-    let of_packing = packing.map(|packing| {
-        let width = spec.tank.width.si();
-        let stones_below = |y: f64| -> f64 {
-            packing.discs.iter().map(|d| disc_rectangle_area(d.radius, -d.x, width - d.x, -d.y, y - d.y)).sum()
-        };
-        let stone = stones_below(spec.tank.height.si());
+    let of_packing = stones.area_of_bed(&spec.tank).map(|floor| {
+        let stone = stones.below(&spec.tank, spec.tank.height.si());
         FoulingIndices::of(
             &material::Bed {
                 stone_volume: stone,
-                void_volume: width * spec.tank.height.si() - stone,
-                fines_bulk_volume: (width * fouled_height - stones_below(fouled_height)) * fouling.filling.si(),
+                void_volume: floor * spec.tank.height.si() - stone,
+                fines_bulk_volume: (floor * fouled_height - stones.below(&spec.tank, fouled_height))
+                    * fouling.filling.si(),
                 fines_porosity: bed.fines_porosity,
                 stone_density: bed.stone_density,
                 fines_density: bed.fines_density,
@@ -270,4 +248,29 @@ fn report(
         nominal,
         of_packing,
     })
+}
+
+/// The stones that a report counts: in space where the bed is there, else those of the section.
+#[derive(Clone, Copy)]
+struct Stones<'a> {
+    packing: Option<&'a Packing>,
+    spheres: Option<&'a SphereBed>,
+}
+
+impl Stones<'_> {
+    /// Floor of the bed: m² in space, m in a section; none without stones.
+    fn area_of_bed(self, tank: &TankSpec) -> Option<f64> {
+        let section = self.packing.map(|_| tank.width.si());
+        self.spheres.map(SphereBed::floor_area).or(section)
+    }
+
+    /// Stone below a height, m³ or m².
+    fn below(self, tank: &TankSpec, height: f64) -> f64 {
+        if let Some(bed) = self.spheres {
+            return bed.spheres.iter().map(|sphere| sphere.volume_between(0.0, height)).sum();
+        }
+        let width = tank.width.si();
+        let discs = self.packing.map_or(&[][..], |packing| packing.discs.as_slice());
+        discs.iter().map(|d| disc_rectangle_area(d.radius, -d.x, width - d.x, -d.y, height - d.y)).sum()
+    }
 }

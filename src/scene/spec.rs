@@ -50,6 +50,9 @@ pub struct SceneSpec {
 pub struct TankSpec {
     /// Inner width.
     pub width: Metres,
+    /// Inner depth, across the section; as the width when absent. Only a bed of spheres has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub depth: Option<Metres>,
     /// Height of the ballast bed.
     pub height: Metres,
     /// Thickness of the side walls.
@@ -68,6 +71,7 @@ impl Default for TankSpec {
     fn default() -> Self {
         Self {
             width: Metres(1.47),
+            depth: None,
             height: Metres(0.48),
             wall: Metres(0.04),
             base: Metres(0.04),
@@ -86,8 +90,22 @@ pub enum PackingMethod {
     Rsa,
     /// No stones: each layer holds the effective permittivity of its mixture.
     Homogeneous,
-    /// Discs read from `packing.file`.
+    /// Discs or spheres read from `packing.file`.
     File,
+    /// Spheres at random places in space, none touching another: a loose bed, under 38 % solid.
+    RandomAddition,
+}
+
+impl PackingMethod {
+    /// The word for it in a scene.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Rsa => "rsa",
+            Self::Homogeneous => "homogeneous",
+            Self::File => "file",
+            Self::RandomAddition => "random-addition",
+        }
+    }
 }
 
 /// Whether the stones carry their true permittivity.
@@ -146,7 +164,13 @@ pub struct PackingSpec {
     pub input: InputRule,
     /// Height of the compaction strips.
     pub strip: Metres,
-    /// Packing to read (`x,y,radius` in metres), for `method = "file"`.
+    /// Share of the box that random addition fills with stone, 30 % when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub solid_share: Option<Share>,
+    /// Where a section cuts a bed of spheres, from its front; the middle when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slice: Option<Metres>,
+    /// Packing to read, for `method = "file"`: CSV (`x,y,radius`, of spheres `x,y,z,radius`, in metres) or JSON.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<std::path::PathBuf>,
     /// Material of the stones.
@@ -168,6 +192,8 @@ impl Default for PackingSpec {
             class_reading: ClassReading::default(),
             input: InputRule::default(),
             strip: Metres(0.02),
+            solid_share: None,
+            slice: None,
             file: None,
             stone: "limestone".into(),
             stone_permittivity: EquivalentStone::True,
@@ -293,10 +319,55 @@ impl Smoothing {
     }
 }
 
+/// In how many dimensions the waves travel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(into = "u8", try_from = "u8")]
+pub enum Dimension {
+    /// A section: TMz, the antenna a line across it.
+    #[default]
+    Two,
+    /// Space: the antenna a point.
+    Three,
+}
+
+impl From<Dimension> for u8 {
+    fn from(dimension: Dimension) -> Self {
+        match dimension {
+            Dimension::Two => 2,
+            Dimension::Three => 3,
+        }
+    }
+}
+
+impl TryFrom<u8> for Dimension {
+    type Error = String;
+    fn try_from(number: u8) -> Result<Self, String> {
+        match number {
+            2 => Ok(Self::Two),
+            3 => Ok(Self::Three),
+            _ => Err(format!("{number} is no dimension of a model\n\nhint: write `dimension = 2` or `dimension = 3`")),
+        }
+    }
+}
+
+impl std::str::FromStr for Dimension {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "2" => Ok(Self::Two),
+            "3" => Ok(Self::Three),
+            _ => Err(format!("`{text}` is no dimension of a model: write 2 or 3")),
+        }
+    }
+}
+
 /// Cells, smoothing and time.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct GridSpec {
+    /// In how many dimensions the waves travel.
+    #[serde(skip_serializing_if = "is_plane")]
+    pub dimension: Dimension,
     /// Cell size. Assumed: not published.
     pub cell: Metres,
     /// Time window.
@@ -312,6 +383,10 @@ pub struct GridSpec {
     pub order: Order,
 }
 
+fn is_plane(dimension: &Dimension) -> bool {
+    *dimension == Dimension::Two
+}
+
 fn is_second(order: &Order) -> bool {
     *order == Order::Second
 }
@@ -319,6 +394,7 @@ fn is_second(order: &Order) -> bool {
 impl Default for GridSpec {
     fn default() -> Self {
         Self {
+            dimension: Dimension::Two,
             cell: Metres(0.002),
             time_window: Seconds(25e-9),
             absorbing_cells: 10,
@@ -343,6 +419,13 @@ impl Default for SceneSpec {
             grid: GridSpec::default(),
             materials: BTreeMap::new(),
         }
+    }
+}
+
+impl TankSpec {
+    /// Inner depth: what the scene says, else as much as the width.
+    pub fn inner_depth(&self) -> Metres {
+        self.depth.unwrap_or(self.width)
     }
 }
 
