@@ -10,6 +10,7 @@
 //! a strip, and the sizes a sieve stands for ([`grading::ClassReading`]).
 
 pub mod calibrate;
+pub mod dem;
 pub mod export;
 pub mod grading;
 pub mod spheres;
