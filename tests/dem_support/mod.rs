@@ -20,6 +20,11 @@ pub fn sphere(centre: [f64; 3], radius: f64) -> Grain {
     Grain::at_rest(Sphere { centre, radius })
 }
 
+/// Mass of a stone of ballast, kg.
+pub fn mass(radius: f64) -> f64 {
+    4.0 / 3.0 * std::f64::consts::PI * radius.powi(3) * Stuff::BALLAST.density
+}
+
 /// Numbers that look random and are the same everywhere: splitmix64.
 pub struct Numbers(pub u64);
 

@@ -78,7 +78,8 @@ pub enum DemError {
     },
     /// Grains that overlap so deeply that they would be shot apart.
     #[error(
-        "grains {first} and {second} overlap by {overlap} at the start, {share:.1} % of the smaller radius; the limit is {limit:.1} %\n\nhint: place them without overlap, or relax the packing with softer grains first"
+        "grains {first} and {second} overlap by {:.4} mm at the start, {share:.1} % of the smaller radius; the limit is {limit:.1} %\n\nhint: place them without overlap, or relax the packing with softer grains first",
+        1e3 * overlap.si()
     )]
     DeepOverlap {
         /// One grain.
@@ -94,7 +95,8 @@ pub enum DemError {
     },
     /// A grain that is too deep in a wall at the start.
     #[error(
-        "grain {grain} lies {overlap} deep in wall {wall} at the start, {share:.1} % of its radius; the limit is {limit:.1} %\n\nhint: move it off the wall"
+        "grain {grain} lies {:.4} mm deep in wall {wall} at the start, {share:.1} % of its radius; the limit is {limit:.1} %\n\nhint: move it off the wall",
+        1e3 * overlap.si()
     )]
     DeepInWall {
         /// The grain.

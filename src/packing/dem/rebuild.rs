@@ -97,7 +97,7 @@ impl Simulation {
     }
 
     /// Makes the grids over the meshes, if there are none for this reach.
-    fn fit_mesh_grids(&mut self, reach: f64) {
+    pub(super) fn fit_mesh_grids(&mut self, reach: f64) {
         if self.mesh_grids.len() == self.bodies.len() && self.mesh_reach >= reach {
             return;
         }

@@ -240,20 +240,31 @@ impl Simulation {
         let hertz = |stiffness: f64, radius: f64, overlap: f64| {
             4.0 / 15.0 * stiffness * (radius * overlap.max(0.0)).sqrt() * overlap.max(0.0).powi(2)
         };
-        let of_pair = |(i, pair): (usize, usize)| {
+        // Also of contacts that no step has seen yet.
+        let of_pair = |i: usize, pair: usize| {
             let j = self.pairs.partner[pair] as usize;
             let (here, there) = (self.grains.place[i], self.grains.place[j]);
             let overlap = here.w() + there.w() - norm(period.nearest(sub(here.xyz(), there.xyz())));
             let law = self.laws.of(self.grains.material[i], self.grains.material[j]);
             hertz(law.normal_stiffness, here.w() * there.w() / (here.w() + there.w()), overlap)
         };
-        let of_wall = |(c, slot): (usize, &super::wall_contacts::Slot)| {
+        let of_wall = |c: usize| {
             let i = self.walls.grain[c] as usize;
             let material = self.bodies[self.walls.wall[c] as usize].wall.material as u16;
             let law = self.laws.of(self.grains.material[i], material);
-            hertz(law.normal_stiffness, self.grains.place[i].w(), slot.history.w())
+            let radius = self.grains.place[i].w();
+            let slots = &self.walls.slots[self.walls.slots_of(c)];
+            if slots[0].is_empty() {
+                return hertz(law.normal_stiffness, radius, self.walls.depth(c, &self.bodies, self.grains.place[i]));
+            }
+            let live = slots.iter().filter(|slot| !slot.is_empty());
+            live.map(|slot| hertz(law.normal_stiffness, radius, slot.history.w())).sum()
         };
-        self.pairs.touching().map(of_pair).sum::<f64>() + self.walls.touching().map(of_wall).sum::<f64>()
+        let of_grain = |i: usize| {
+            let pairs = self.pairs.starts[i] as usize..self.pairs.starts[i + 1] as usize;
+            pairs.map(|pair| of_pair(i, pair)).sum::<f64>()
+        };
+        (0..self.grains.len()).map(of_grain).sum::<f64>() + (0..self.walls.grain.len()).map(of_wall).sum::<f64>()
     }
 
     /// How many places touch per grain: pairs count for both their grains, walls for one.

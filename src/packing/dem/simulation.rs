@@ -16,7 +16,7 @@ use super::rebuild::Lost;
 use super::segment::{self, End, Work, per_contact};
 use super::setup::{Grain, Limits, Motion, Setup, TimeStep};
 use super::shared::Shared;
-use super::stuff::Stuff;
+use super::stuff::{Pairing, Stuff};
 use super::time_step::{self, StepLength};
 use super::vector::{Four, norm};
 use super::wall_contacts::WallContacts;
@@ -37,6 +37,7 @@ const MOST_TRAVEL: f64 = 0.1;
 #[derive(Debug, Clone)]
 pub struct Simulation {
     pub(super) stuffs: Vec<Stuff>,
+    pub(super) pairings: Vec<Pairing>,
     pub(super) laws: Laws,
     pub(super) gravity: [f64; 3],
     pub(super) periodic: [Option<[f64; 2]>; 2],
@@ -114,6 +115,7 @@ impl Simulation {
             grains: Grains::new(&setup.grains, &setup.stuffs),
             count: setup.grains.len(),
             stuffs: setup.stuffs,
+            pairings: setup.pairings,
             gravity: setup.gravity,
             periodic: setup.periodic,
             domain: setup.domain,
@@ -121,9 +123,35 @@ impl Simulation {
             friction: setup.friction,
             rolling: setup.rolling,
             length,
+            bodies: setup.walls.into_iter().map(Body::new).collect(),
+            radii,
+            ..Self::empty()
+        };
+        made.pairs = Pairs::new(vec![0; made.grains.len() + 1], vec![], made.needs());
+        made.walls = WallContacts::new(&[], &[], &[], 0.0);
+        made.first_list();
+        made.check_overlaps()?;
+        made.begin_watch();
+        Ok(made)
+    }
+
+    /// A simulation of nothing, to be filled from a file.
+    pub(super) fn empty() -> Self {
+        Self {
+            stuffs: vec![],
+            pairings: vec![],
+            laws: Laws::default(),
+            gravity: [0.0; 3],
+            periodic: [None, None],
+            domain: [[0.0; 3]; 2],
+            limits: Limits::default(),
+            friction: false,
+            rolling: Rolling::None,
+            length: StepLength { seconds: 0.0, rayleigh: 0.0, grain: 0, contact: 0.0 },
+            grains: Grains::default(),
             pairs: Pairs::default(),
             walls: WallContacts::default(),
-            bodies: setup.walls.into_iter().map(Body::new).collect(),
+            bodies: vec![],
             mesh_grids: vec![],
             mesh_reach: 0.0,
             list: ListState::default(),
@@ -132,14 +160,9 @@ impl Simulation {
             watch: Watch::default(),
             rolling_torque: vec![],
             keep_rolling_torque: false,
-            radii,
-        };
-        made.pairs = Pairs::new(vec![0; made.grains.len() + 1], vec![], made.needs());
-        made.walls = WallContacts::new(&[], &[], &[], 0.0);
-        made.first_list();
-        made.check_overlaps()?;
-        made.begin_watch();
-        Ok(made)
+            count: 0,
+            radii: [0.0; 2],
+        }
     }
 
     /// Makes `steps` steps on at most `threads` threads. `on_progress` is called some ten times a second and may stop the

@@ -30,6 +30,13 @@ pub struct Slot {
     pub point: [f64; 3],
 }
 
+impl Slot {
+    /// Whether there is no contact in it.
+    pub fn is_empty(&self) -> bool {
+        self.feature == NO_FEATURE
+    }
+}
+
 impl Default for Slot {
     fn default() -> Self {
         Self {
@@ -131,7 +138,7 @@ impl WallContacts {
     /// The contacts: candidate and slot.
     pub fn touching(&self) -> impl Iterator<Item = (usize, &Slot)> {
         (0..self.grain.len()).flat_map(|c| {
-            self.slots[self.slots_of(c)].iter().take_while(|slot| slot.feature != NO_FEATURE).map(move |slot| (c, slot))
+            self.slots[self.slots_of(c)].iter().take_while(|slot| !slot.is_empty()).map(move |slot| (c, slot))
         })
     }
 

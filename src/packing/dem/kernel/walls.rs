@@ -87,13 +87,13 @@ pub fn walls(sweep: &WallSweep<'_>, candidates: Range<usize>, out: &mut WallSlot
         let at = c - out.first;
         let slots = &mut out.slots[from..to];
         if count == 0 {
-            if slots[0].feature != NO_FEATURE {
+            if !slots[0].is_empty() {
                 slots.fill(Slot::default());
                 (out.force[at], out.torque[at]) = (Four::default(), Four::default());
             }
             continue;
         }
-        let live = slots.iter().take_while(|slot| slot.feature != NO_FEATURE).count();
+        let live = slots.iter().take_while(|slot| !slot.is_empty()).count();
         old[..live].copy_from_slice(&slots[..live]);
         if live > count {
             slots[count..live].fill(Slot::default());
