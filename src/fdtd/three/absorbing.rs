@@ -3,6 +3,7 @@
 use super::super::real::Real;
 use super::super::slab::{Filter, Slab};
 use super::super::state::{Numbers, State};
+use super::arena::Arena;
 use super::kernel::{ColumnFilter, ColumnProfile, RowFilter, RowProfile};
 use super::setup::Setup3;
 use super::sheet::{LANES, Sheets, padded};
@@ -22,9 +23,9 @@ pub struct Memory<T> {
 }
 
 impl<T: Real> Memory<T> {
-    fn new(rows: usize, width: usize, second_order: bool) -> Self {
+    fn new(arena: &mut Arena, rows: usize, width: usize, second_order: bool) -> Self {
         let each = if second_order { 2 } else { 1 };
-        Self { sheets: Sheets::zeros(4 * each, rows, width), each }
+        Self { sheets: Sheets::zeros_in(arena, 4 * each, rows, width), each }
     }
 
     /// The first numbers of both components of E (0) or H (2): `n` nodes of a row from node `k` on.
@@ -202,15 +203,15 @@ impl<T: Real> State for Absorbing<T> {
 }
 
 impl<T: Real> Absorbing<T> {
-    /// Allocates what plane `i` needs.
-    pub fn new(setup: &Setup3<'_>, i: usize, width: usize, columns: &Columns<T>) -> Self {
+    /// Takes what plane `i` needs from an arena.
+    pub fn new(setup: &Setup3<'_>, arena: &mut Arena, i: usize, width: usize, columns: &Columns<T>) -> Self {
         let [_, ny, _] = setup.painted.cells;
         let rows = setup.slabs[1].extent() + setup.slabs[4].cells;
         let (second, ends) = (setup.slabs.iter().any(Slab::is_second_order), columns.vectors.len() * LANES);
         Self {
-            x: profiles(setup, 0, i).map(|profiles| (profiles, Memory::new(ny - 1, width, second))),
-            y: (rows > 0).then(|| Memory::new(rows - 1, width, second)),
-            z: (ends > 0).then(|| Memory::new(ny - 1, ends, second)),
+            x: profiles(setup, 0, i).map(|profiles| (profiles, Memory::new(arena, ny - 1, width, second))),
+            y: (rows > 0).then(|| Memory::new(arena, rows - 1, width, second)),
+            z: (ends > 0).then(|| Memory::new(arena, ny - 1, ends, second)),
         }
     }
 

@@ -5,6 +5,7 @@
 
 use super::super::real::Real;
 use super::super::state::{Numbers, State};
+use super::arena::Arena;
 use super::sheet::Sheets;
 
 /// The fields of a plane: Ex, Ey, Ez, Hx, Hy, Hz, the rows `-1..=last` of each.
@@ -38,8 +39,13 @@ pub struct ForE<'a, T> {
 
 impl<T: Real> Fields<T> {
     /// Zeros: the rows `-1..=last` of `width` nodes.
-    pub fn zeros(last: usize, width: usize) -> Self {
-        Self { sheets: Sheets::zeros(6, last, width) }
+    pub fn zeros(arena: &mut Arena, last: usize, width: usize) -> Self {
+        Self { sheets: Sheets::zeros_in(arena, 6, last, width) }
+    }
+
+    /// No rows.
+    pub fn none() -> Self {
+        Self { sheets: Sheets::zeros(6, 0, 0) }
     }
 
     /// Memory that [`Fields::zeros`] takes, bytes.
@@ -121,7 +127,7 @@ mod tests {
     #[test]
     fn every_way_leads_to_the_same_place() {
         let (rows, width) = (3, 32);
-        let mut fields = Fields::<f32>::zeros(rows, width);
+        let mut fields = Fields::<f32>::zeros(&mut Arena::of_bytes(0), rows, width);
         let number = |field: usize, j: usize, k: usize| (1000 * field + 100 * j + k) as f32 + 1.0;
         for field in 0..6 {
             for j in 0..rows {

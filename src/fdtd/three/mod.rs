@@ -11,6 +11,7 @@
 
 mod absorbing;
 mod absorbing_fourth;
+mod arena;
 mod camera;
 mod drive;
 mod fields;

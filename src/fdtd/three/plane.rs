@@ -6,6 +6,7 @@ use super::super::instructions::InstructionSet;
 use super::super::slab::Slab;
 use super::super::state::{Numbers, State};
 use super::absorbing::{Absorbing, Columns, Profiles, profiles};
+use super::arena::Arena;
 use super::drive::{Act, Drive};
 use super::fields::Fields;
 use super::grades::{Grades, Table};
@@ -179,11 +180,11 @@ impl<T: Number> Scratch<T> {
 
 impl<T: Number> Plane<T> {
     /// A plane beyond the outer wall: zeros that stay.
-    pub fn beyond(setup: &Setup3<'_>) -> Self {
+    pub fn beyond(setup: &Setup3<'_>, arena: &mut Arena) -> Self {
         let [_, ny, nz] = setup.painted.cells;
         Self {
             i: usize::MAX,
-            fields: Fields::zeros(ny, padded(nz)),
+            fields: Fields::zeros(arena, ny, padded(nz)),
             grades: None,
             magnetic: None,
             absorbing: None,
@@ -222,7 +223,7 @@ impl<T: Number> Plane<T> {
         Self {
             i,
             grades: Some(Grades::new(setup, i, shared.table.is_some())),
-            fields: Fields::zeros(0, 0),
+            fields: Fields::none(),
             magnetic: setup.magnetic().then(faces),
             absorbing: None,
             magnets,
@@ -233,9 +234,9 @@ impl<T: Number> Plane<T> {
     }
 
     /// Allocates the fields and the absorbing memory of the plane.
-    pub fn add_fields(self, setup: &Setup3<'_>, shared: &Shared<T>) -> Self {
-        let absorbing = Some(Absorbing::new(setup, self.i, shared.width, &shared.z));
-        let mut fields = Self::beyond(setup).fields;
+    pub fn add_fields(self, setup: &Setup3<'_>, shared: &Shared<T>, arena: &mut Arena) -> Self {
+        let absorbing = Some(Absorbing::new(setup, arena, self.i, shared.width, &shared.z));
+        let mut fields = Self::beyond(setup, arena).fields;
         for drive in &self.drives {
             if let Some(initial) = drive.initial {
                 *fields.value_mut(drive.axis, drive.j, drive.k) = initial;

@@ -10,6 +10,7 @@
 
 use super::super::real::Real;
 use super::super::state::{Numbers, State};
+use super::arena::{Arena, Piece};
 
 /// Rows are padded to whole multiples of this many numbers (64 bytes in single precision).
 pub const LANES: usize = 16;
@@ -28,7 +29,7 @@ const ROUND: usize = 4096;
 /// are read together would push each other out otherwise.
 #[derive(Debug, Clone)]
 pub struct Sheets<T> {
-    data: Vec<T>,
+    data: Piece<T>,
     /// Place of node 0 of row -1 of the first quantity.
     origin: usize,
     /// Nodes of a row.
@@ -57,15 +58,28 @@ fn distance<T>(last: usize, width: usize) -> usize {
 impl<T: Real> Sheets<T> {
     /// Zeros: `parts` quantities, of each the rows `-1..=last` of `width` nodes.
     pub fn zeros(parts: usize, last: usize, width: usize) -> Self {
-        let apart = distance::<T>(last, width);
-        let data = vec![T::default(); parts * apart + LANES];
+        let data = vec![T::default(); Self::numbers(parts, last, width)];
+        Self::within(data.into(), parts, last, width)
+    }
+
+    /// As [`Sheets::zeros`], in an arena.
+    pub fn zeros_in(arena: &mut Arena, parts: usize, last: usize, width: usize) -> Self {
+        Self::within(arena.zeros(Self::numbers(parts, last, width)), parts, last, width)
+    }
+
+    fn within(data: Piece<T>, parts: usize, last: usize, width: usize) -> Self {
         let to_border = data.as_ptr().align_offset(64).min(LANES);
-        Self { data, origin: to_border + LANES, width, apart, parts }
+        Self { data, origin: to_border + LANES, width, apart: distance::<T>(last, width), parts }
+    }
+
+    /// How many numbers there are, with the padding.
+    fn numbers(parts: usize, last: usize, width: usize) -> usize {
+        parts * distance::<T>(last, width) + LANES
     }
 
     /// Memory that [`Sheets::zeros`] takes, bytes.
     pub fn bytes(parts: usize, last: usize, width: usize) -> u64 {
-        ((parts * distance::<T>(last, width) + LANES) * size_of::<T>()) as u64
+        Arena::bytes::<T>(Self::numbers(parts, last, width))
     }
 
     /// Place of a node in the numbers of its quantity.

@@ -19,10 +19,14 @@ use std::time::{Duration, Instant};
 use super::super::FdtdError;
 use super::super::checkpoint::Keeper;
 use super::super::state::{Numbers, State};
+use super::absorbing::Absorbing;
+use super::arena::Arena;
 use super::camera::Camera;
+use super::fields::Fields;
 use super::instructions::step;
 use super::plane::{Plane, Probe, Scratch, Shared};
 use super::setup::{Setup3, axis_of};
+use super::sheet::padded;
 use super::step::Step;
 use super::vector::Number;
 use crate::forward::{OnProgress, Progress};
@@ -113,8 +117,13 @@ pub fn planes<T: Number>(setup: &mut Setup3<'_>, shared: &Shared<T>) -> Vec<Plan
     let nx = setup.painted.cells[0];
     let bare: Vec<_> = (0..nx).map(|i| Plane::new(setup, shared, i)).collect();
     setup.forget_painting();
-    let inside = bare.into_iter().map(|plane| plane.add_fields(setup, shared));
-    std::iter::once(Plane::beyond(setup)).chain(inside).chain(std::iter::once(Plane::beyond(setup))).collect()
+    let width = padded(setup.painted.cells[2]);
+    let fields = (nx as u64 + 2) * Fields::<T>::bytes(setup.painted.cells[1], width);
+    let mut arena = Arena::of_bytes(fields + Absorbing::<T>::bytes(setup, width));
+    let mut planes = vec![Plane::beyond(setup, &mut arena)];
+    planes.extend(bare.into_iter().map(|plane| plane.add_fields(setup, shared, &mut arena)));
+    planes.push(Plane::beyond(setup, &mut arena));
+    planes
 }
 
 /// What the thread that asks is told before a pass.
