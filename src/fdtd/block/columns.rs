@@ -21,7 +21,7 @@ pub struct Columns<T> {
 /// Coefficients and memory of one field.
 pub struct OneField<T> {
     /// `RA - 1`, `RB`, `RE`, `RF` at the nodes of the absorbing chunks.
-    pub profile: [Vec<Chunk<T>>; 4],
+    pub profile: Vec<[Chunk<T>; 4]>,
     /// The memory of each row.
     pub phi: Rows<T>,
 }
@@ -63,7 +63,7 @@ impl<T: Real> Columns<T> {
                 std::array::from_fn(|k| sample((LANES * (chunk - 1) + 1 + k) as f64 - shift))
             };
             let absorbing: Vec<[[T; 4]; LANES]> = (1..=low).chain(high..=all).map(of_chunk).collect();
-            let profile = std::array::from_fn(|k| absorbing.iter().map(|chunk| chunk.map(|of| of[k])).collect());
+            let profile = absorbing.iter().map(|chunk| std::array::from_fn(|k| chunk.map(|of| of[k]))).collect();
             OneField { profile, phi: Rows::zeros(rows, absorbing.len() * LANES) }
         };
         Self { low, high, e: field(0.0), h: field(0.5) }
@@ -88,20 +88,20 @@ impl<T: Real> OneField<T> {
     /// What absorbs in a span of a row.
     #[inline(always)]
     pub fn along(&mut self, row: usize, ends: Ends) -> Along<'_, T> {
-        let count = self.profile[0].len();
+        let count = self.profile.len();
         Along { phi: self.phi.chunks_mut(row, 1, count), profile: &self.profile, ends }
     }
 
     /// `RA - 1` and `RF` at a place, and the memory of a row there.
     pub fn at(&mut self, row: usize, place: usize) -> ([T; 2], &mut T) {
         let (chunk, k) = ((place - 1) / LANES, (place - 1) % LANES);
-        let [ra_less_one, _, _, rf] = &self.profile;
-        ([ra_less_one[chunk][k], rf[chunk][k]], &mut self.phi.at_mut(row, place, 1)[0])
+        let [ra_less_one, _, _, rf] = &self.profile[chunk];
+        ([ra_less_one[k], rf[k]], &mut self.phi.at_mut(row, place, 1)[0])
     }
 
     /// The memory of a row.
     pub fn memory(&mut self, row: usize) -> &mut [T] {
-        let count = self.profile[0].len() * LANES;
+        let count = self.profile.len() * LANES;
         self.phi.at_mut(row, 1, count)
     }
 }

@@ -44,7 +44,7 @@ pub struct Along<'a, T> {
     /// The memory of the row, one chunk per absorbing chunk of the grid.
     pub phi: &'a mut [Chunk<T>],
     /// `RA - 1`, `RB`, `RE`, `RF` at the nodes of the absorbing chunks.
-    pub profile: &'a [Vec<Chunk<T>>; 4],
+    pub profile: &'a [[Chunk<T>; 4]],
     /// Which of them are in the span.
     pub ends: Ends,
 }
@@ -85,13 +85,8 @@ impl<T: Real> Along<'_, T> {
     #[inline(always)]
     pub fn gain<C: Lanes<T>>(&mut self, i: usize, d: C) -> Option<C> {
         let place = self.ends.place(i)?;
-        let [ra_less_one, rb, re, rf] = self.profile;
-        let profile = [&ra_less_one[place], &rb[place], &re[place], &rf[place]];
-        Some(gain(
-            d,
-            &mut self.phi[place],
-            [C::load(profile[0]), C::load(profile[1]), C::load(profile[2]), C::load(profile[3])],
-        ))
+        let [ra_less_one, rb, re, rf] = &self.profile[place];
+        Some(gain(d, &mut self.phi[place], [C::load(ra_less_one), C::load(rb), C::load(re), C::load(rf)]))
     }
 }
 

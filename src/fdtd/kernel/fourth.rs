@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::super::lanes::{Chunk, Lanes};
 use super::super::real::Real;
-use super::update::{RowOfE, RowOfH};
+use super::update::{ANY, NONE, RowOfE, RowOfH};
 
 #[inline(always)]
 fn difference<T: Real, C: Lanes<T>>(before: C, low: C, high: C, behind: C) -> C {
@@ -30,13 +30,13 @@ impl<T: Real> FourthRowOfH<'_, T> {
         self.h.hx = &mut std::mem::take(&mut self.h.hx)[..count];
         self.ez = &self.ez[..count + 2];
         self.across = self.across.map(|row| &row[..count]);
-        self.some::<C, true>(0..plain.start.min(count));
-        self.some::<C, false>(plain.clone());
-        self.some::<C, true>(plain.end..count);
+        self.some::<C, ANY>(0..plain.start.min(count));
+        self.some::<C, NONE>(plain.clone());
+        self.some::<C, ANY>(plain.end..count);
     }
 
     #[inline(always)]
-    fn some<C: Lanes<T>, const ABSORBING: bool>(&mut self, chunks: Range<usize>) {
+    fn some<C: Lanes<T>, const ABSORBING: u8>(&mut self, chunks: Range<usize>) {
         let [before, high, behind] = self.across;
         let mut south = C::load(&self.ez[chunks.start]);
         let (mut south_of_south, mut low) = (south.southern(south), C::load(&self.ez[chunks.start + 1]));
@@ -74,17 +74,17 @@ impl<T: Real> FourthRowOfE<'_, T> {
         self.e.cb = &self.e.cb[..count];
         self.e.ca = self.e.ca.map(|ca| &ca[..count]);
         let plain = self.e.plain(count);
-        self.some::<C, true, true>(0..plain.start.min(count));
+        self.some::<C, ANY, true>(0..plain.start.min(count));
         if self.e.ca.is_some() {
-            self.some::<C, false, true>(plain.clone());
+            self.some::<C, NONE, true>(plain.clone());
         } else {
-            self.some::<C, false, false>(plain.clone());
+            self.some::<C, NONE, false>(plain.clone());
         }
-        self.some::<C, true, true>(plain.end..count);
+        self.some::<C, ANY, true>(plain.end..count);
     }
 
     #[inline(always)]
-    fn some<C: Lanes<T>, const ABSORBING: bool, const LOSSY: bool>(&mut self, chunks: Range<usize>) {
+    fn some<C: Lanes<T>, const ABSORBING: u8, const LOSSY: bool>(&mut self, chunks: Range<usize>) {
         let [before, low, high, behind] = self.hy;
         let (mut south, mut here) = (C::load(&self.hx[chunks.start]), C::load(&self.hx[chunks.start + 1]));
         for i in chunks {

@@ -8,6 +8,13 @@ use super::super::lanes::{Chunk, Lanes};
 use super::super::real::Real;
 use super::absorb::{Across, Along};
 
+/// A chunk that does not absorb.
+pub const NONE: u8 = 0;
+/// A chunk that absorbs along y and not across x.
+pub const ALONG: u8 = 1;
+/// A chunk that may absorb either way.
+pub const ANY: u8 = 2;
+
 /// H of a span of a row, and what absorbs it.
 pub struct RowOfH<'a, T> {
     /// One chunk per chunk of the span.
@@ -26,18 +33,20 @@ impl<T: Real> RowOfH<'_, T> {
         if self.across.is_some() { count..count } else { self.along.ends.plain(count) }
     }
 
-    /// One H step of chunk `i`: `Hx -= dy Ez`, `Hy += dx Ez`, both scaled. `ABSORBING`: the chunk may absorb.
+    /// One H step of chunk `i`: `Hx -= dy Ez`, `Hy += dx Ez`, both scaled. `ABSORBING`: [`NONE`], [`ALONG`] or [`ANY`].
     #[inline(always)]
-    pub fn step<C: Lanes<T>, const ABSORBING: bool>(&mut self, i: usize, along_x: C, along_y: C) -> [C; 2] {
+    pub fn step<C: Lanes<T>, const ABSORBING: u8>(&mut self, i: usize, along_x: C, along_y: C) -> [C; 2] {
         let mut hx = C::load(&self.hx[i]) - along_y;
         let mut hy = C::load(&self.hy[i]) + along_x;
-        if ABSORBING {
-            if let Some(across) = &mut self.across {
-                hy = hy + across.gain(i, along_x);
-            }
-            if let Some(gain) = self.along.gain(i, along_y) {
-                hx = hx - gain;
-            }
+        if ABSORBING == ANY
+            && let Some(across) = &mut self.across
+        {
+            hy = hy + across.gain(i, along_x);
+        }
+        if ABSORBING != NONE
+            && let Some(gain) = self.along.gain(i, along_y)
+        {
+            hx = hx - gain;
         }
         hx.store(&mut self.hx[i]);
         hy.store(&mut self.hy[i]);
@@ -65,9 +74,9 @@ impl<T: Real> RowOfE<'_, T> {
         if self.across.is_some() { count..count } else { self.along.ends.plain(count) }
     }
 
-    /// One E step of chunk `i`: `ca Ez + cb [dx Hy - ratio dy Hx]`. `ABSORBING`: the chunk may absorb; `LOSSY`: there is a `ca`.
+    /// One E step of chunk `i`: `ca Ez + cb [dx Hy - ratio dy Hx]`. `ABSORBING`: [`NONE`], [`ALONG`] or [`ANY`]; `LOSSY`: there is a `ca`.
     #[inline(always)]
-    pub fn step<C: Lanes<T>, const ABSORBING: bool, const LOSSY: bool>(
+    pub fn step<C: Lanes<T>, const ABSORBING: u8, const LOSSY: bool>(
         &mut self,
         i: usize,
         ez: C,
@@ -80,13 +89,15 @@ impl<T: Real> RowOfE<'_, T> {
             _ => ez,
         };
         ez = ez + cb * (along_x - ratio * along_y);
-        if ABSORBING {
-            if let Some(across) = &mut self.across {
-                ez = ez + cb * across.gain(i, along_x);
-            }
-            if let Some(gain) = self.along.gain(i, along_y) {
-                ez = ez - cb * (ratio * gain);
-            }
+        if ABSORBING == ANY
+            && let Some(across) = &mut self.across
+        {
+            ez = ez + cb * across.gain(i, along_x);
+        }
+        if ABSORBING != NONE
+            && let Some(gain) = self.along.gain(i, along_y)
+        {
+            ez = ez - cb * (ratio * gain);
         }
         ez
     }
