@@ -7,6 +7,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Instant;
 
+use crate::cli::checkpoint::Used;
 use crate::cli::error::CliError;
 use crate::cli::folder::RunRecord;
 use crate::cli::geometry_files;
@@ -125,11 +126,10 @@ pub fn run(args: &RunArgs, count: NonZeroUsize) -> Result<(), CliError> {
     }
     let bar = Bar::new("B-scan");
     let shown = Shown { bar: &bar, done: AtomicUsize::new(0), total: PARTS * count.get() };
-    let one = |trace: usize, result: PathBuf, album: Option<Album>| -> Result<Outcome, CliError> {
-        let files = vec![];
+    let make = |trace: usize, result: PathBuf, album: Option<Album>| -> Result<Made, CliError> {
         if let Some(record) = kept_or_refused(args, &result, &fingerprint)? {
             let _ = shown.add(PARTS);
-            return Ok(Outcome { target: target.clone(), result, files, kept: true, record });
+            return Ok(Made { result, how: How::Kept(record) });
         }
         let album = album.map_or_else(|| Album::open(&model, &result, args.force), Ok)?;
         let started = Instant::now();
@@ -137,16 +137,27 @@ pub fn run(args: &RunArgs, count: NonZeroUsize) -> Result<(), CliError> {
         let ((traces, stats), used) = snapshots::solve_kept(&args.keep, &album, &result, |keeping| {
             geometry.solve(&solver, &moved, keeping, &shown)
         })?;
-        gprmax::write_traces(&result, &traces, &moved)?;
-        let mut files = album.publish()?;
-        files.extend(geometry_files::write_views(&model, &result, trace, true)?);
-        used.remove();
-        let record: RunRecord = record(args, &fingerprint, started, Some(stats.wall.si()));
-        record.write_beside(&result)?;
-        Ok(Outcome { target: target.clone(), result, files, kept: false, record })
+        let record = record(args, &fingerprint, started, Some(stats.wall.si()));
+        let new = New { trace, moved, traces, album, used, record };
+        Ok(Made { result, how: How::New(Box::new(new)) })
+    };
+    let write = |Made { result, how }: Made| -> Result<Outcome, CliError> {
+        let target = target.clone();
+        match how {
+            How::Kept(record) => Ok(Outcome { target, result, files: vec![], kept: true, record }),
+            How::New(new) => {
+                let New { trace, moved, traces, album, used, record } = *new;
+                gprmax::write_traces(&result, &traces, &moved)?;
+                let mut files = album.publish()?;
+                files.extend(geometry_files::write_views(&model, &result, trace, true)?);
+                used.remove();
+                record.write_beside(&result)?;
+                Ok(Outcome { target, result, files, kept: false, record })
+            }
+        }
     };
     let traces: Vec<_> = results.into_iter().zip(albums).enumerate().collect();
-    let mut outcomes = in_turn(side_by_side, traces, |(trace, (result, album))| one(trace, result, album))?;
+    let mut outcomes = in_turn(side_by_side, traces, |(trace, (result, album))| make(trace, result, album), write)?;
     drop(bar);
     if let Some(outcome) = outcomes.iter_mut().find(|outcome| !outcome.kept) {
         outcome.files.extend(geometry_files::write(&model, &input)?);
@@ -167,26 +178,59 @@ pub fn run(args: &RunArgs, count: NonZeroUsize) -> Result<(), CliError> {
     Ok(())
 }
 
-/// What becomes of each thing, in order, `side_by_side` at a time; the first failure in that order.
-fn in_turn<A: Send, B: Send>(
+/// A trace that has been computed, or was there.
+struct Made {
+    result: PathBuf,
+    how: How,
+}
+
+enum How {
+    Kept(RunRecord),
+    New(Box<New>),
+}
+
+/// What is to be written of a trace.
+struct New {
+    trace: usize,
+    moved: Model,
+    traces: Traces,
+    album: Album,
+    used: Used,
+    record: RunRecord,
+}
+
+/// What becomes of each thing, in order, `side_by_side` made at a time; the first failure in that order.
+///
+/// Each is written while the next is made: a disk takes its time to say that a file is safe.
+fn in_turn<A: Send, M: Send, B: Send>(
     side_by_side: usize,
     things: Vec<A>,
-    one: impl Fn(A) -> Result<B, CliError> + Sync,
+    make: impl Fn(A) -> Result<M, CliError> + Sync,
+    write: impl Fn(M) -> Result<B, CliError> + Sync,
 ) -> Result<Vec<B>, CliError> {
-    if side_by_side == 1 {
-        return things.into_iter().map(one).collect();
-    }
     let slots: Vec<_> = things.iter().map(|_| Mutex::new(None)).collect();
     let (queue, failed) = (Mutex::new(things.into_iter().enumerate()), AtomicBool::new(false));
     let next = || queue.lock().ok().filter(|_| !failed.load(Ordering::Relaxed)).and_then(|mut queue| queue.next());
+    let keep = |index: usize, outcome: Result<B, CliError>| {
+        failed.fetch_or(outcome.is_err(), Ordering::Relaxed);
+        if let Ok(mut slot) = slots[index].lock() {
+            *slot = Some(outcome);
+        }
+    };
     std::thread::scope(|scope| {
         for _ in 0..side_by_side {
             scope.spawn(|| {
+                let mut writing: Option<std::thread::ScopedJoinHandle<'_, ()>> = None;
                 while let Some((index, thing)) = next() {
-                    let outcome = one(thing);
-                    failed.fetch_or(outcome.is_err(), Ordering::Relaxed);
-                    if let Ok(mut slot) = slots[index].lock() {
-                        *slot = Some(outcome);
+                    let made = make(thing);
+                    // One at a time, so that no more than one trace waits to be written.
+                    if let Some(Err(panic)) = writing.take().map(|writing| writing.join()) {
+                        std::panic::resume_unwind(panic);
+                    }
+                    let (keep, write) = (&keep, &write);
+                    match made {
+                        Ok(made) => writing = Some(scope.spawn(move || keep(index, write(made)))),
+                        Err(error) => keep(index, Err(error)),
                     }
                 }
             });
