@@ -260,6 +260,34 @@ pub fn cost_curve(
     })
 }
 
+/// The errors of some settings alone, against the limit of the second-order runs with the subject's first smoothing on
+/// `cells` (three or more, each half the one before), as [`cost_curve`] finds it.
+///
+/// # Errors
+/// See [`CostError`].
+pub fn cost_of(
+    subject: &dyn CostSubject,
+    cells: &[Metres],
+    settings: &[CostSetting],
+    solver: &CostSolver<'_>,
+    on_progress: OnProgress<'_>,
+) -> Result<Vec<CostPoint>, CostError> {
+    let run = |setting| one_run(subject, setting, solver, &mut None, on_progress);
+    let of_cell = |&cell| {
+        let smoothing = subject.smoothings()[0];
+        run(CostSetting { cell, smoothing, order: Order::Second, double_precision: solver.double_precision })
+    };
+    let reference: Vec<AScan> = cells.iter().map(|cell| Ok(of_cell(cell)?.1)).collect::<Result<_, CostError>>()?;
+    let too_few = CostError::TooFewCells { cells: cells.len() };
+    let (limit, _, _) = limit(&reference.iter().collect::<Vec<_>>()).ok_or(too_few)?;
+    let size = norm(&limit.samples);
+    let of_setting = |&setting| {
+        let (point, trace) = run(setting)?;
+        Ok(CostPoint { error: distance(&trace, &limit) / size, ..point })
+    };
+    settings.iter().map(of_setting).collect()
+}
+
 /// The limit of traces on cells that halve, with the order measured on the three finest and the difference of the last two.
 fn limit(traces: &[&AScan]) -> Option<(AScan, f64, f64)> {
     let [.., coarse, middle, fine] = traces else { return None };

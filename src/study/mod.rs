@@ -9,6 +9,7 @@ mod statistics;
 pub use case::{Case, CaseError, Expected, Row, Verdict};
 pub use cost::{
     CostError, CostPoint, CostScene, CostSetting, CostSolver, CostSubject, CostTable, absorbing_cells, cost_curve,
+    cost_of,
 };
 pub use cost_space::CostBed;
 pub use echoes::{EchoError, EchoTime, Echoes, PlateReference, plate_reference, simulate_echoes};

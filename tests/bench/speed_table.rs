@@ -2,8 +2,10 @@
 //! best orientation (two-dimensional models invariant along y) and with its own OpenMP policy.
 //!
 //! `cargo bench --bench speed_table` prints the table (about 15 minutes on two quiet cores); words after `--` choose groups:
-//! `planes`, `volumes` (loops in two and three dimensions), `scene`, `bscan`, `prediction`. Loops: every cell makes every step (no light cones), median of the rounds; scenes and
-//! B-scans: whole processes as a user runs them, light cones included.
+//! `planes`, `volumes` (loops in two and three dimensions), `scene`, `bscan`, `accuracy`, `prediction`. Loops: every cell makes
+//! every step (no light cones), median of the rounds; scenes and B-scans: whole processes as a user runs them, light cones
+//! included. Accuracy: the scenes of `cost fdtd2d` and `cost fdtd3d`, ours with the setting that reaches about the error that
+//! gprMax's own rules reach with the finest cells tried; our painting and loop against gprMax's loop alone.
 //!
 //! Environment: `BENCH_ROUNDS` (5), `BENCH_THREADS` (2), `BALLAST_GPR_GPRMAX_PYTHON`. Without a gprMax the bench fails.
 
@@ -15,14 +17,22 @@ mod scenes;
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::time::Instant;
 
 use ballast_gpr::compare::relative_l2;
 use ballast_gpr::fdtd::{Fdtd, Stepping, predict, predict_three};
+use ballast_gpr::forward::Forward as _;
 use ballast_gpr::gprmax::{InputOptions, Interpreter, install, read_traces, write_input};
-use ballast_gpr::model::{Material, Model, TimeWindow, paint, paint3};
-use ballast_gpr::trace::Component;
+use ballast_gpr::model::{Material, Model, Order, TimeWindow, paint, paint3};
+use ballast_gpr::scene::Smoothing;
+use ballast_gpr::study::{CostBed, CostScene, CostSetting, CostSolver, CostSubject, cost_of};
+use ballast_gpr::trace::{AScan, Component};
+use ballast_gpr::units::Metres;
 use peer::{Outcome, least, load, median, ours, setting, theirs};
 use scenes::{across_y, bed_2d, bed_3d, host, moist};
+
+/// Cell, m, what happens where two materials meet, and the order of the differences.
+type Setting = (f64, Smoothing, Order);
 
 struct Bench {
     rounds: usize,
@@ -106,7 +116,7 @@ impl Bench {
         a.component = Component::Ez;
         let b = b.ok_or("no Ez")?;
         // Turned about, the field has the other sign or the same; both did the same work in single precision.
-        let flipped = ballast_gpr::trace::AScan { samples: a.samples.iter().map(|v| -v).collect(), ..a.clone() };
+        let flipped = AScan { samples: a.samples.iter().map(|v| -v).collect(), ..a.clone() };
         let difference = relative_l2(&a, b)?.min(relative_l2(&flipped, b)?);
         if difference.is_nan() || difference > 2e-5 {
             return Err(format!("{name}: the traces differ by {difference:e}").into());
@@ -115,6 +125,69 @@ impl Bench {
         let (we, they) = (median(&we), median(&they));
         let ratio = they / we;
         println!("{name:<34}{we:>8.2}s{they:>9.2}s{ratio:>8.1}{best:>8.1}{must:>6}{:>8}  {before} -> {}", "", load());
+        Ok(())
+    }
+
+    /// One row: the time to about the same error, which is that of the echoes against the limit of ever finer cells.
+    fn accuracy(
+        &self,
+        name: &str,
+        subject: &dyn CostSubject,
+        reference: &[f64],
+        pair: [Setting; 2],
+        folder: &Path,
+    ) -> Outcome<()> {
+        let single = Fdtd { threads: NonZeroUsize::new(self.threads), ..Fdtd::default() };
+        let solver = CostSolver { solver: &single, double_precision: false, finest: Metres(0.0), bytes: &|_| Ok(0) };
+        let cells: Vec<Metres> = reference.iter().map(|&cell| Metres(cell)).collect();
+        let [mine, other] = pair.map(|(cell, smoothing, order)| CostSetting {
+            cell: Metres(cell),
+            smoothing,
+            order,
+            double_precision: false,
+        });
+        let points = cost_of(subject, &cells, &[mine, other], &solver, &|_| ControlFlow::Continue(()))?;
+        let (model, same) = (subject.model(mine)?, subject.model(other)?);
+        let turned = if same.is_plane() { across_y(&same) } else { same.clone() };
+        write_input(&turned, folder, "accuracy", &InputOptions::default())?;
+        let (input, output) = (folder.join("accuracy.in"), folder.join("accuracy.h5"));
+        let (before, mut we, mut they) = (load(), vec![], vec![]);
+        for _ in 0..self.rounds {
+            let begin = Instant::now();
+            single.solve(&model, &|_| ControlFlow::Continue(()))?;
+            we.push(begin.elapsed().as_secs_f64());
+            they.push(theirs(&self.python, &input, &output, self.threads, &[])?[1]);
+        }
+        // gprMax's trace is the one whose error was found.
+        let component = subject.component();
+        let theirs = read_traces(&output)?;
+        let of_theirs = if same.is_plane() { Component::Ey } else { component };
+        let a = theirs.receivers[0].component(of_theirs).ok_or("no such component")?.clone();
+        let ours = single.solve(&same, &|_| ControlFlow::Continue(()))?;
+        let b = ours.receivers[0].component(component).ok_or("no such component")?;
+        let sign = |sign: f64| AScan { samples: a.samples.iter().map(|v| sign * v).collect(), component, ..a.clone() };
+        let difference = relative_l2(&sign(1.0), b)?.min(relative_l2(&sign(-1.0), b)?);
+        if difference.is_nan() || difference > 1e-3 {
+            return Err(format!("{name}: the traces differ by {difference:e}").into());
+        }
+        let (ratio, best) = (median(&they) / median(&we), least(&they) / least(&we));
+        println!(
+            "{name:<34}{:>8.2}s{:>9.2}s{ratio:>8.0}{best:>8.0}{:>6}{:>8}  {before} -> {}",
+            median(&we),
+            median(&they),
+            "100",
+            "",
+            load()
+        );
+        for (who, setting, point) in [("ours", mine, &points[0]), ("gprMax", other, &points[1])] {
+            let CostSetting { cell, smoothing, order, .. } = setting;
+            println!(
+                "    {who}: cells of {}, `{}`, order {order}: {:.2} %",
+                cell.in_unit("mm"),
+                smoothing.name(),
+                100.0 * point.error
+            );
+        }
         Ok(())
     }
 
@@ -182,6 +255,14 @@ fn main() -> Outcome<()> {
         model.time_window = TimeWindow::Seconds(8e-9);
         (model.source_steps, model.receiver_steps) = ([0.002, 0.0, 0.0], [0.002, 0.0, 0.0]);
         bench.process("B-scan of 50, 300 x 200, 8 ns", "30", &model, Some(50), place)?;
+    }
+    if asked("accuracy") {
+        let plane = CostScene::standard()?;
+        let pair = [(1.6e-3, Smoothing::Area, Order::Second), (1e-3, Smoothing::Edges, Order::Second)];
+        bench.accuracy("2-D, 1 % error of the echoes", &plane, &[2e-3, 1e-3, 0.5e-3], pair, place)?;
+        let space = CostBed::standard();
+        let pair = [(5e-3, Smoothing::Shapes, Order::Second), (1.25e-3, Smoothing::Edges, Order::Second)];
+        bench.accuracy("3-D, 15 % error of the echoes", &space, &[5e-3, 2.5e-3, 1.25e-3], pair, place)?;
     }
     if asked("prediction") {
         println!("{:<34}{:>9}{:>10}{:>8}", "`explain`", "predicted", "measured", "off");

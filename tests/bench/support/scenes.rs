@@ -72,6 +72,11 @@ pub fn across_y(model: &Model) -> Model {
             Object::Box { lower, upper, .. } => (*lower, *upper) = (turn(*lower), turn(*upper)),
             Object::Cylinder { start, end, .. } => (*start, *end) = (turn(*start), turn(*end)),
             Object::Sphere { centre, .. } => *centre = turn(*centre),
+            // One cell deep either way, so the cells keep their order.
+            Object::Voxels(voxels) if voxels.edges.is_none() && voxels.shape[2] == 1 => {
+                voxels.origin = turn(voxels.origin);
+                voxels.shape.swap(1, 2);
+            }
             other => panic!("{other:?} has not been taught to turn"),
         }
     }
