@@ -1,83 +1,108 @@
-//! Particle-steps per second of the spheres: a settled bed and free fall, and the cost against their number.
+//! Particle-steps per second of the spheres: settled beds, free fall, and the cost against their number; beside LIGGGHTS and
+//! Kratos where they are installed (see `support/dem_peers.rs`), interleaved, as the median of five.
 //!
-//! `cargo bench --bench dem` for the table; with `-- 5000 2 4000` one bed of so many stones on so many threads for so
-//! many steps.
+//! `cargo bench --bench dem` for all tables; `-- own` leaves the peers out, `-- peers` everything else; `-- quick` takes a
+//! tenth of the steps.
 
-use std::num::NonZeroUsize;
-use std::time::Instant;
+use ballast_gpr::packing::dem::{Setup, Simulation};
 
-use ballast_gpr::packing::dem::{Setup, Simulation, TimeStep};
-
+#[path = "support/dem_beds.rs"]
+mod dem_beds;
+#[path = "support/dem_peers.rs"]
+mod dem_peers;
 #[path = "../dem_support/mod.rs"]
 mod dem_support;
 
-fn rate(simulation: &mut Simulation, steps: u64, threads: usize) -> f64 {
-    let begin = Instant::now();
-    let threads = NonZeroUsize::new(threads).unwrap_or(NonZeroUsize::MIN);
-    if let Err(error) = simulation.run_quietly(steps, threads) {
-        eprintln!("{error}");
-        std::process::exit(1);
-    }
-    steps as f64 * simulation.count() as f64 / begin.elapsed().as_secs_f64()
+use dem_beds::{TILE, bed, fall, must, rate, settled_tile};
+use dem_peers::Peer;
+
+/// Rounds of each measurement.
+const ROUNDS: usize = 5;
+
+/// A scene and what to time of it.
+struct Scene {
+    name: &'static str,
+    setup: Setup,
+    /// Width of its box, m.
+    wide: Option<f64>,
+    /// Particle-steps of a round.
+    work: u64,
 }
 
-fn simulate(setup: Setup) -> Simulation {
-    Simulation::new(setup).unwrap_or_else(|error| {
-        eprintln!("{error}");
-        std::process::exit(1)
-    })
-}
-
-/// A bed of `count` stones in a box 1 m wide per 5000 stones: dropped softly (E 20 MPa) and then stiffened to 17.7 GPa from
-/// the places of a bed with overlaps removed by growing the step again.
-fn settled(count: usize, threads: usize) -> Simulation {
-    let width = (count as f64 / 5000.0).sqrt().max(0.3);
-    let mut setup = dem_support::loose_heap(count, width, 1);
-    // Larger steps while it falls: 5 µs are 19 % of the Rayleigh time, 15 µs are 58 %.
-    setup.time_step = TimeStep::Seconds(1.2e-5);
-    let mut simulation = simulate(setup);
-    let begin = Instant::now();
-    for round in 0..60 {
-        rate(&mut simulation, 2000, threads);
-        let energy = simulation.kinetic_energy();
-        if round % 10 == 9 {
-            eprintln!(
-                "  settling: {:.2} s of bed in {:.0} s, {energy:.3e} J, unbalanced {:.3}",
-                simulation.time().si(),
-                begin.elapsed().as_secs_f64(),
-                simulation.unbalanced_force_ratio()
-            );
-        }
-        if round > 15 && energy < 1e-4 * count as f64 * 1e-2 {
-            break;
-        }
-    }
-    let _ = simulation.set_time_step(TimeStep::Seconds(5e-6));
-    simulation
+fn median(mut rates: Vec<f64>) -> f64 {
+    rates.sort_by(f64::total_cmp);
+    rates.get(rates.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
 fn main() {
-    let numbers: Vec<u64> = std::env::args().filter_map(|word| word.parse().ok()).collect();
-    if let [count, threads, steps] = numbers[..] {
-        let mut fall = dem_support::loose_heap(count as usize, (count as f64 / 5000.0).sqrt(), 1);
-        fall.walls.clear();
-        let mut falling = simulate(fall);
-        for _ in 0..3 {
-            println!("fall {count} on {threads}: {:.3e}", rate(&mut falling, steps, threads as usize));
+    let said = |word: &str| std::env::args().any(|said| said == word);
+    let share = if said("quick") { 10 } else { 1 };
+    let tile = settled_tile();
+    let scene = |name, setup, wide, work| Scene { name, setup, wide, work: work / share };
+    let scenes = [
+        scene("bed", bed(&tile, [1, 1]), Some(1.0), 20_000_000),
+        scene("bed", bed(&tile, [2, 2]), Some(2.0), 20_000_000),
+        scene("fall", fall(TILE), None, 40_000_000),
+        scene("fall", fall(4 * TILE), None, 40_000_000),
+    ];
+    let peers = if said("own") { vec![] } else { Peer::installed() };
+    println!("| scene | stones | threads | program | particle-steps/s, median of {ROUNDS} | ours over it |");
+    println!("|---|---|---|---|---|---|");
+    for threads in [1, 2] {
+        for scene in &scenes {
+            compare(scene, &peers, threads);
         }
-        let mut bed = settled(count as usize, threads as usize);
-        println!("coordination {:.2}", bed.coordination_number());
-        for _ in 0..5 {
-            println!("bed {count} on {threads}: {:.3e}", rate(&mut bed, steps, threads as usize));
-        }
-        return;
     }
-    println!("| scene | stones | threads | particle-steps/s |\n|---|---|---|---|");
-    for count in [5000, 20_000] {
-        let mut bed = settled(count, 2);
-        for threads in [1, 2] {
-            let best = (0..3).map(|_| rate(&mut bed, 400, threads)).fold(0.0, f64::max);
-            println!("| bed | {count} | {threads} | {best:.3e} |");
+    if !said("peers") {
+        against_number(&tile, share);
+    }
+}
+
+/// Ours and the peers in turns.
+fn compare(scene: &Scene, peers: &[Peer], threads: usize) {
+    let count = scene.setup.grains.len();
+    let steps = (scene.work / count as u64).max(50);
+    let mut simulation = must(Simulation::new(scene.setup.clone()));
+    rate(&mut simulation, 100, threads);
+    let mut ours = vec![];
+    let mut theirs: Vec<Vec<f64>> = vec![vec![]; peers.len()];
+    for _ in 0..ROUNDS {
+        if scene.wide.is_none() {
+            // From rest again, as the peers.
+            simulation = must(Simulation::new(scene.setup.clone()));
+            rate(&mut simulation, 100, threads);
         }
+        ours.push(rate(&mut simulation, steps, threads));
+        for (peer, rates) in peers.iter().zip(&mut theirs) {
+            // Kratos takes some forty times as long.
+            let steps = if *peer == Peer::Kratos { (steps / 40).max(20) } else { steps };
+            rates.extend(peer.rate(&scene.setup, scene.wide, steps, threads));
+        }
+    }
+    let ours = median(ours);
+    println!("| {} | {count} | {threads} | ballast-gpr | {ours:.3e} | 1 |", scene.name);
+    for (peer, rates) in peers.iter().zip(theirs) {
+        let rate = median(rates);
+        println!("| {} | {count} | {threads} | {} | {rate:.3e} | {:.2} |", scene.name, peer.name(), ours / rate);
+    }
+}
+
+/// Time of a step against the number of stones, and the exponent between neighbours in the table.
+fn against_number(tile: &[ballast_gpr::packing::dem::Grain], share: u64) {
+    println!("\n| stones | contacts | particle-steps/s on 2 threads | ns a stone and step | exponent of the time |");
+    println!("|---|---|---|---|---|");
+    let mut before: Option<(f64, f64)> = None;
+    for tiles in [[1, 1], [2, 1], [2, 2], [4, 2], [4, 4], [8, 5]] {
+        let mut simulation = must(Simulation::new(bed(tile, tiles)));
+        let count = simulation.count();
+        let steps = (20_000_000 / share / count as u64).max(20);
+        rate(&mut simulation, 50, 2);
+        let rate = median((0..3).map(|_| rate(&mut simulation, steps, 2)).collect());
+        let time = count as f64 / rate;
+        let exponent = before.map_or("–".to_string(), |(number, then)| {
+            format!("{:.2}", (time / then).ln() / (count as f64 / number).ln())
+        });
+        println!("| {count} | {} | {rate:.3e} | {:.1} | {exponent} |", simulation.contacts().len(), 1e9 / rate);
+        before = Some((count as f64, time));
     }
 }

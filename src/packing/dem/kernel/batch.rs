@@ -45,7 +45,7 @@ impl Batch {
         for l in self.count..LANES {
             (self.slot[l], self.first[l], self.second[l]) = (self.slot[last], self.first[last], self.second[last]);
         }
-        let (mut d, mut v, mut w) = ([ZERO; 3], [ZERO; 3], [ZERO; 3]);
+        let (mut d, mut v, mut wi, mut wj) = ([ZERO; 3], [ZERO; 3], [ZERO; 3], [ZERO; 3]);
         let (mut ri, mut rj, mut mi, mut mj, mut eccentricity) = (ZERO, ZERO, ZERO, ZERO, ZERO);
         let mut old = [ZERO; 4];
         let mut laws = [sweep.laws.of(0, 0); LANES];
@@ -61,14 +61,11 @@ impl Batch {
             laws[l] = sweep.laws.of(sweep.material[i], sweep.material[j]);
             (ri[l], rj[l], mi[l], mj[l]) = (a[3], b[3], va[3], vb[3]);
             eccentricity[l] = if sa[3] < sb[3] { sa[3] } else { sb[3] };
-            let overlap = a[3] + b[3] - (apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2]).sqrt();
-            let share = laws[l].lever_share;
-            let (la, lb) = (a[3] - share * overlap, b[3] - (1.0 - share) * overlap);
             for k in 0..3 {
                 d[k][l] = apart[k];
                 v[k][l] = va[k] - vb[k];
                 if FRICTION {
-                    w[k][l] = la * sa[k] + lb * sb[k];
+                    (wi[k][l], wj[k][l]) = (sa[k], sb[k]);
                 }
             }
             if FRICTION {
@@ -97,7 +94,9 @@ impl Batch {
             pressing[l] = pressed.force;
             let mut f = [pressed.force * n[0], pressed.force * n[1], pressed.force * n[2]];
             if FRICTION {
-                let turning = cross([w[0][l], w[1][l], w[2][l]], n);
+                let share = laws[l].lever_share;
+                let (li, lj) = (ri[l] - share * overlap, rj[l] - (1.0 - share) * overlap);
+                let turning = cross([0, 1, 2].map(|k| li * wi[k][l] + lj * wj[k][l]), n);
                 let along = [0, 1, 2].map(|k| at_centres[k] - receding * n[k] - turning[k]);
                 let before = Before { elastic: [old[0][l], old[1][l], old[2][l]], overlap: old[3][l] };
                 let coefficients = [pressed.tangential_stiffness * sweep.dt, pressed.tangential_damping];
