@@ -173,7 +173,7 @@ fn figure(table: &CostTable, curve: &Curve) -> Chart {
     let kinds = [
         (Smoothing::None, "staircase"),
         (Smoothing::Edges, "edge means"),
-        (Smoothing::Area, "area means"),
+        (Smoothing::Area, if matches!(curve.own, OwnTable::Space) { "volume means" } else { "area means" }),
         (Smoothing::Shapes, "true shapes"),
     ];
     for (index, (kind, name)) in kinds.into_iter().enumerate() {
