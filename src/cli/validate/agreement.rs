@@ -90,17 +90,26 @@ pub fn validate(args: &ValidateArgs) -> Result<CaseReport, CliError> {
 /// Runs a case through gprMax in a folder of its own: what the case writes beside itself is not left among the stored files.
 fn run_again(args: &ValidateArgs, case: &Path) -> Result<Traces, CliError> {
     let place = tempfile::tempdir().map_err(|error| CliError::input(format!("no temporary folder: {error}")))?;
-    let entries = fs::read_dir(case).and_then(|entries| entries.collect::<Result<Vec<_>, _>>());
-    let copied = entries.and_then(|entries| {
-        let files = entries.iter().map(fs::DirEntry::path).filter(|path| path.is_file());
-        files
-            .filter_map(|path| Some((path.clone(), path.file_name()?.to_owned())))
-            .try_for_each(|(path, name)| fs::copy(path, place.path().join(name)).map(|_| ()))
-    });
-    copied.map_err(|error| CliError::input(format!("the case `{}` cannot be copied: {error}", case.display())))?;
+    copy(case, place.path())
+        .map_err(|error| CliError::input(format!("the case `{}` cannot be copied: {error}", case.display())))?;
     let solver = gprmax_solver(args.gprmax_python.as_deref(), PrecisionName::Double, None)?;
     let run = solver.run_file(&place.path().join("scene.in"), &place.path().join("now.h5"), &|_| interrupt::flow());
     Ok(run?.traces)
+}
+
+/// Copies what a folder holds, and what its folders hold, into another that is there.
+fn copy(from: &Path, to: &Path) -> std::io::Result<()> {
+    for entry in fs::read_dir(from)? {
+        let entry = entry?;
+        let place = to.join(entry.file_name());
+        if entry.file_type()?.is_dir() {
+            fs::create_dir(&place)?;
+            copy(&entry.path(), &place)?;
+        } else {
+            fs::copy(entry.path(), &place)?;
+        }
+    }
+    Ok(())
 }
 
 /// Folders that hold a `scene.in` and an `out_f64.h5`.
