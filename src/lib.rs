@@ -35,7 +35,7 @@
 //! | [`gprmax`] | its input files, its HDF5 files, running it | units, trace, material, model, geometry, forward, files |
 //! | [`fdtd`] | the built-in solver | units, trace, material, model, forward, files |
 //! | [`compare`] | time zero, resampling, picks, misfits | units, trace |
-//! | [`study`] | published cases, ensembles, accuracy against cost | units, files, trace, geometry, material, model, packing, scene, raster, forward, compare |
+//! | [`study`] | published cases, ensembles, accuracy against cost, experiments with spheres | units, files, trace, geometry, material, model, packing, scene, raster, forward, compare |
 //! | [`plot`] | figures from plain data | units, files |
 //!
 //! [`cli`] may import all of them, and is the only place that prints, reads flags or exits. `tests/layering.rs` holds the

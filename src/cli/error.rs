@@ -162,6 +162,22 @@ impl From<crate::study::CostError> for CliError {
     }
 }
 
+impl From<crate::study::experiments::ExperimentError> for CliError {
+    fn from(error: crate::study::experiments::ExperimentError) -> Self {
+        use crate::packing::dem::DemError;
+        use crate::study::experiments::ExperimentError;
+        let kind = match &error {
+            ExperimentError::Stopped { .. } | ExperimentError::Dem(DemError::Stopped { .. }) => Kind::Interrupted,
+            ExperimentError::NeverEnds { .. }
+            | ExperimentError::Dem(
+                DemError::TooFast { .. } | DemError::TooDeep { .. } | DemError::EnergyGrows { .. },
+            ) => Kind::Verdict,
+            _ => Kind::Input,
+        };
+        Self::new(kind, error.to_string())
+    }
+}
+
 /// The message of an error, followed by those of its causes that it does not repeat.
 pub fn chain(error: &dyn std::error::Error) -> String {
     let mut message = error.to_string();

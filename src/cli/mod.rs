@@ -12,6 +12,7 @@ mod cost;
 mod cost_choice;
 mod demo;
 mod error;
+mod experiment;
 mod explain;
 mod folder;
 mod geometry_files;
@@ -66,6 +67,7 @@ enum Command {
     Pack(pack::PackArgs),
     Validate(validate::ValidateArgs),
     Cost(cost::CostArgs),
+    Experiment(experiment::ExperimentArgs),
     Gprmax(gprmax::GprMaxArgs),
     /// Print the completion script of a shell: `source <(ballast-gpr completions bash)`.
     Completions {
@@ -87,6 +89,7 @@ pub fn main() -> ExitCode {
         Command::Pack(args) => pack::run(args),
         Command::Validate(args) => validate::run(args),
         Command::Cost(args) => cost::run(args),
+        Command::Experiment(args) => experiment::run(args),
         Command::Gprmax(args) => gprmax::run(args),
         Command::Completions { shell } => {
             clap_complete::generate(*shell, &mut Cli::command(), "ballast-gpr", &mut std::io::stdout());

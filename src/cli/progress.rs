@@ -24,6 +24,11 @@ impl Bar {
 
     /// Moves the bar, and tells whether to go on.
     pub fn update(&self, progress: Progress) -> ControlFlow<()> {
+        self.update_with(progress, || self.label.clone())
+    }
+
+    /// Moves the bar and says something else beside it.
+    pub fn update_with(&self, progress: Progress, label: impl Fn() -> String) -> ControlFlow<()> {
         if self.started.elapsed() > Duration::from_secs(2)
             && let Ok(mut shown) = self.shown.lock()
         {
@@ -35,9 +40,9 @@ impl Bar {
                 {
                     bar.set_style(style);
                 }
-                bar.set_message(self.label.clone());
                 bar
             });
+            bar.set_message(label());
             bar.set_length(progress.total as u64);
             bar.set_position(progress.done as u64);
         }

@@ -4,6 +4,7 @@ mod case;
 mod cost;
 mod cost_space;
 mod echoes;
+pub mod experiments;
 mod statistics;
 
 pub use case::{Case, CaseError, Expected, Row, Verdict};

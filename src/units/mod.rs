@@ -8,4 +8,6 @@ mod parse;
 mod quantity;
 
 pub use parse::UnitError;
-pub use quantity::{Hertz, KilogramsPerCubicMetre, Metres, Seconds, Share, SiemensPerMetre};
+pub use quantity::{
+    Hertz, Kilograms, KilogramsPerCubicMetre, Metres, MetresPerSecond, Pascals, Seconds, Share, SiemensPerMetre,
+};

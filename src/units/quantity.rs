@@ -88,6 +88,18 @@ quantity!(
     KilogramsPerCubicMetre, "density", "2800kg/m3", [("kg/m3", 0), ("kg/m³", 0), ("g/cm3", 3), ("g/cm³", 3), ("t/m3", 3)], "kg/m3"
 );
 quantity!(
+    /// A stress or a modulus in pascals.
+    Pascals, "stress", "17.7GPa", [("Pa", 0), ("kPa", 3), ("MPa", 6), ("GPa", 9)], "Pa"
+);
+quantity!(
+    /// A mass in kilograms.
+    Kilograms, "mass", "285kg", [("kg", 0), ("g", -3), ("t", 3)], "kg"
+);
+quantity!(
+    /// A speed in metres per second.
+    MetresPerSecond, "speed", "1mm/s", [("m/s", 0), ("cm/s", -2), ("mm/s", -3)], "m/s"
+);
+quantity!(
     /// A share of a whole, 1 being all of it; written in percent.
     Share, "share", "42%", [("%", -2)], "%"
 );

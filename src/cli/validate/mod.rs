@@ -4,6 +4,7 @@ mod agreement;
 mod arrivals;
 mod benedetto;
 mod echoes;
+mod irazabal;
 
 use std::path::PathBuf;
 
@@ -48,6 +49,9 @@ pub enum CaseName {
     TankArrivals,
     /// The built-in solver against gprMax's own outputs (in the full tier gprMax runs again, on the tanks too).
     Gprmax,
+    /// Spheres with bounded rolling friction: Irazábal et al. 2017 (in the full tier the angle of repose over five seeds each, and
+    /// the lateral resistance of a sleeper: hours).
+    Irazabal2017,
     /// Echoes of real packings, ten seeds, clean and fouled, true and equivalent stones (full tier).
     TankEchoes,
 }
@@ -83,7 +87,7 @@ pub fn run(args: &ValidateArgs) -> Result<(), CliError> {
     } else if args.tier == Tier::Full {
         CaseName::value_variants().to_vec()
     } else {
-        vec![CaseName::Benedetto2018, CaseName::TankArrivals, CaseName::Gprmax]
+        vec![CaseName::Benedetto2018, CaseName::TankArrivals, CaseName::Gprmax, CaseName::Irazabal2017]
     };
     if let Some(folder) = &args.out {
         crate::files::create_folder(folder)?;
@@ -95,6 +99,7 @@ pub fn run(args: &ValidateArgs) -> Result<(), CliError> {
             CaseName::Benedetto2018 => benedetto::validate()?,
             CaseName::TankArrivals => arrivals::validate(args.out.as_deref())?,
             CaseName::Gprmax => agreement::validate(args)?,
+            CaseName::Irazabal2017 => irazabal::validate(args.tier)?,
             CaseName::TankEchoes => echoes::validate(args.out.as_deref())?,
         };
         misses += report.misses;

@@ -54,11 +54,11 @@ pub fn square_hopper(
     gate: bool,
 ) -> Result<TriangleMesh, MeshError> {
     positive("opening of the hopper", opening)?;
-    positive("height of the hopper", height)?;
     positive("top of the hopper", top)?;
     if top.si() <= opening.si() {
         return Err(MeshError::NoFunnel { top, opening });
     }
+    positive("height of the hopper", height)?;
     let ring = |width: f64, z: f64| -> [V3; 4] {
         let half = 0.5 * width;
         [[-half, -half, z], [half, -half, z], [half, half, z], [-half, half, z]].map(|corner| add(corner, axis))

@@ -29,6 +29,10 @@ const LIFTING_MARGIN: f64 = 1e-6;
 impl Simulation {
     /// Begins to watch anew, from the state as it is.
     pub(super) fn begin_watch(&mut self) {
+        if self.step == 0 {
+            // Contacts of the set-up are not yet known.
+            return self.begin_watch_without_forces();
+        }
         let (kinetic, elastic) = (self.kinetic_energy(), self.elastic_energy());
         self.watch.work = 0.0;
         self.watch.least = kinetic + elastic + self.potential_energy();
