@@ -154,7 +154,7 @@ fn bad_scenes_are_refused_word_for_word() {
         (
             "[packing]\nvoid = \"42%\"",
             "the scene `mine.toml` cannot be read\n  line 2: void = \"42%\"\n  unknown field `void`, expected one of `method`, \
-             `voids`, `grading`, `class_reading`, `input`, `strip`, `solid_share`, `slice`, `file`, `stone`, `stone_permittivity`, `judged_by`, `mixing`\n\n\
+             `voids`, `grading`, `class_reading`, `input`, `strip`, `solid_share`, `dem`, `slice`, `file`, `stone`, `stone_permittivity`, `judged_by`, `mixing`\n\n\
              hint: did you mean `voids` in place of `void`?",
         ),
         (

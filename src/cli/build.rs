@@ -15,11 +15,12 @@ use crate::cli::map_figure;
 use crate::cli::pack;
 use crate::cli::progress::Bar;
 use crate::cli::scene_args::SceneArgs;
+use crate::cli::settle;
 use crate::files;
 use crate::forward::Progress;
 use crate::gprmax::{self, InputOptions};
 use crate::raster;
-use crate::scene::{self, FoulingAmount, SceneSpec};
+use crate::scene::{self, FoulingAmount, PackingMethod, SceneSpec};
 use crate::units::Share;
 
 /// Build a scene: pack the stones, mix the materials, draw the map, write the gprMax input.
@@ -122,7 +123,7 @@ enum Sibling {
 /// Looks at the folder of a sibling: a call that was stopped goes on where it was.
 fn sibling(spec: &SceneSpec, target: &Path) -> Result<Sibling, CliError> {
     let Ok(text) = files::read_text(&target.join(folder::SCENE)) else { return Ok(Sibling::New) };
-    if text != scene::resolve(spec)?.spec.to_toml()? {
+    if spec.packing.method == PackingMethod::Dem || text != scene::resolve(spec)?.spec.to_toml()? {
         return Ok(Sibling::New);
     }
     Ok(if folder::is_built(target) { Sibling::Whole } else { Sibling::Begun })
@@ -139,7 +140,10 @@ pub fn build_folder(
     force: bool,
 ) -> Result<Manifest, CliError> {
     folder::check_free(target, force)?;
-    let mut scene = scene::resolve(spec)?;
+    let (mut scene, settled) = settle::resolve(spec, Some(target))?;
+    for line in settled.iter().flat_map(settle::told) {
+        eprintln!("{line}");
+    }
     let started = Instant::now();
     let model = raster::build_model(&scene)?;
     let cells = Cells::of(&model)?;

@@ -151,6 +151,17 @@ impl From<crate::study::EchoError> for CliError {
     }
 }
 
+impl From<crate::study::DimensionError> for CliError {
+    fn from(error: crate::study::DimensionError) -> Self {
+        use crate::study::DimensionError;
+        match error {
+            DimensionError::Scene(error) => error.into(),
+            DimensionError::Echo(error) => error.into(),
+            DimensionError::NoSections => Self::input(error.to_string()),
+        }
+    }
+}
+
 impl From<crate::study::CostError> for CliError {
     fn from(error: crate::study::CostError) -> Self {
         use crate::study::CostError;

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::cli::error::CliError;
 use crate::files;
 use crate::gprmax;
+use crate::packing::settle;
 
 /// Name of the resolved scene.
 pub const SCENE: &str = "scene.toml";
@@ -21,7 +22,10 @@ const MODEL_FILES: [&str; 3] = [MODEL, "model_geometry.h5", "model_materials.jso
 /// # Errors
 /// When it is a file, or holds something and `force` is not set.
 pub fn check_free(folder: &Path, force: bool) -> Result<(), CliError> {
-    let occupied = fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some());
+    // What a stopped bed left is there to go on from.
+    let of_a_stop = |name: &std::ffi::OsStr| name == settle::STATE || name == settle::STAGE;
+    let occupied = fs::read_dir(folder)
+        .is_ok_and(|mut entries| entries.any(|entry| entry.map_or(true, |entry| !of_a_stop(&entry.file_name()))));
     if folder.is_file() {
         return Err(CliError::input(format!(
             "`{}` is a file, not a folder\n\nhint: choose another name with `--out`",

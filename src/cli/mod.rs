@@ -25,6 +25,7 @@ mod pack_spheres;
 mod progress;
 mod run;
 mod scene_args;
+mod settle;
 mod snapshots;
 mod table;
 mod trace_file;

@@ -9,6 +9,7 @@ use crate::cli::folder;
 use crate::cli::pack_spheres;
 use crate::cli::progress::Bar;
 use crate::cli::scene_args::SceneArgs;
+use crate::cli::settle;
 use crate::cli::table::Report;
 use crate::files;
 use crate::forward::Progress;
@@ -57,14 +58,17 @@ pub fn run(args: &PackArgs) -> Result<(), CliError> {
     }
     let mut spec = args.args.spec(args.scene.as_deref())?;
     let calibration = args.calibrate.then(|| refit(&mut spec, args.json)).transpose()?;
-    let mut scene = scene::resolve(&spec)?;
+    if let Some(folder) = &args.out {
+        folder::check_free(folder, args.force)?;
+    }
+    let (mut scene, settled) = settle::resolve(&spec, args.out.as_deref())?;
     if let (Some(folder), true) = (&args.out, scene.packing.is_some() || scene.spheres.is_some()) {
         scene.spec.to_toml()?;
         folder::prepare(folder, args.force)?;
         write_scene(&mut scene, folder)?;
     }
     if let Some(bed) = &scene.spheres {
-        return pack_spheres::print(&scene, bed, args.json);
+        return pack_spheres::print(&scene, bed, settled.as_ref(), args.json);
     }
     let packing = scene.packing.as_ref().ok_or_else(|| {
         CliError::input("this scene has no stones (`method = \"homogeneous\"`)\n\nhint: leave `--homogeneous` out")
@@ -118,7 +122,8 @@ pub fn percent(share: Share) -> f64 {
 /// # Errors
 /// When a file cannot be written.
 pub fn write_scene(scene: &mut Scene, folder: &Path) -> Result<(), CliError> {
-    if scene.spec.packing.method == PackingMethod::File {
+    if matches!(scene.spec.packing.method, PackingMethod::File | PackingMethod::Dem) {
+        scene.spec.packing.method = PackingMethod::File;
         scene.spec.packing.file = Some(PACKING.into());
     }
     if let Some(bed) = &scene.spheres {

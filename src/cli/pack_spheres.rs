@@ -4,8 +4,10 @@ use std::path::Path;
 
 use crate::cli::error::CliError;
 use crate::cli::pack::{PACKING, grading_chart, packing_figure, percent};
+use crate::cli::settle;
 use crate::cli::table::Report;
 use crate::files;
+use crate::packing::settle::Settled;
 use crate::packing::spheres::TOUCHING;
 use crate::packing::{Packing, SphereBed, export};
 use crate::plot::{Axis, Chart, Figure as _, Series, SpheresFigure};
@@ -123,7 +125,7 @@ fn share_in(section: &Packing, low: [f64; 3], high: [f64; 3]) -> crate::units::S
 ///
 /// # Errors
 /// When they cannot be written as JSON.
-pub fn print(scene: &Scene, bed: &SphereBed, json: bool) -> Result<(), CliError> {
+pub fn print(scene: &Scene, bed: &SphereBed, settled: Option<&Settled>, json: bool) -> Result<(), CliError> {
     let grading = scene.spec.packing.grading.curve()?;
     let rows = bed.grading_table(&grading);
     let coordination = bed.coordination(TOUCHING);
@@ -153,6 +155,10 @@ pub fn print(scene: &Scene, bed: &SphereBed, json: bool) -> Result<(), CliError>
                 "input_passing_percent": percent(row.wanted),
                 "output_passing_percent": percent(row.found),
             })).collect::<Vec<_>>(),
+            "stages": settled.map(|settled| &settled.stages),
+            "struck_off": settled.map(|settled| settled.struck_off),
+            "lost": settled.map(|settled| settled.lost),
+            "time_step_s": settled.map(|settled| settled.time_step.si()),
             "seconds": scene.packing_seconds,
         });
         println!("{}", serde_json::to_string_pretty(&value)?);
@@ -178,6 +184,9 @@ pub fn print(scene: &Scene, bed: &SphereBed, json: bool) -> Result<(), CliError>
         row("contact force, N", format!("{:.3} (mean), {:.2} (largest)", forces.mean_newtons, forces.largest_newtons));
     }
     table.print();
+    for line in settled.iter().flat_map(|settled| settle::told(settled)) {
+        println!("{line}");
+    }
     let mut table = Report::new("Sieve curve by mass, % passing", ["sieve, mm", "input", "bed", "deviation"]);
     for row in &rows {
         table.row([

@@ -22,6 +22,17 @@ impl Bar {
         Self { label: label.into(), started: Instant::now(), shown: Mutex::new(None) }
     }
 
+    /// As [`update`](Self::update), with something said beside the label.
+    pub fn update_saying(&self, progress: Progress, said: &str) -> ControlFlow<()> {
+        let flow = self.update(progress);
+        if let Ok(shown) = self.shown.lock()
+            && let Some(bar) = shown.as_ref()
+        {
+            bar.set_message(format!("{} {said}", self.label));
+        }
+        flow
+    }
+
     /// Moves the bar, and tells whether to go on.
     pub fn update(&self, progress: Progress) -> ControlFlow<()> {
         self.update_with(progress, || self.label.clone())

@@ -1,5 +1,6 @@
 //! The flags that describe a scene, and how they change a scene file.
 
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
@@ -12,13 +13,14 @@ use crate::scene::{
     Dimension, EquivalentStone, FoulingAmount, FoulingSpec, GeometryKind, GradingSpec, PackingMethod, SceneSpec,
     Smoothing,
 };
-use crate::units::{Hertz, Metres, Seconds, Share};
+use crate::units::{Hertz, Metres, Pascals, Seconds, Share};
 
 /// What a scene is made of. Everything here can stand in the scene file as well; a flag wins over the file.
 #[derive(Debug, Clone, Default, PartialEq, Args)]
 #[command(next_help_heading = "Scene")]
 pub struct SceneArgs {
-    /// Built-in scene to start from: `tank` is the laboratory tank of Benedetto et al. 2018.
+    /// Built-in scene to start from: `tank` is the laboratory tank of Benedetto et al. 2018, `bed` a small piece of it with
+    /// settled spheres, for models in space.
     #[arg(long, value_name = "NAME")]
     pub preset: Option<String>,
     /// Fouling: a height from the bottom (20cm), "40% of voids", "16% by volume" or "14% by mass".
@@ -36,13 +38,22 @@ pub struct SceneArgs {
     /// Which sizes a retained fraction fills: `en-933-1` (between its sieve and the next larger one) or `one-sieve-up`.
     #[arg(long, value_name = "READING")]
     pub class_reading: Option<String>,
-    /// How the stones come about: `rsa` (discs, Benedetto et al. 2018) or `random-addition` (loose spheres in space); or a
-    /// file with stones: CSV `x,y,radius` or `x,y,z,radius` in metres, or JSON written by `pack`.
+    /// How the stones come about: `rsa` (discs, Benedetto et al. 2018), `dem` (spheres that fall into the tank and come to rest)
+    /// or `random-addition` (loose spheres in space); or a file with stones: CSV `x,y,radius` or `x,y,z,radius` in metres, or JSON written by `pack`.
     #[arg(long, visible_alias = "method", value_name = "METHOD|FILE")]
     pub packing: Option<PathBuf>,
     /// Inner length, depth and height of the tank: 1.5x1.5x0.5m.
     #[arg(long = "box", value_name = "LxDxH")]
     pub box_size: Option<BoxSize>,
+    /// Height of the bed.
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    pub height: Option<Metres>,
+    /// dem: number of stones [default: as many as the bed's height takes].
+    #[arg(long, value_name = "NUM")]
+    pub stones: Option<NonZeroUsize>,
+    /// dem: modulus of Young of the stones; soft ones take longer steps and overlap deeper [default: 1 GPa].
+    #[arg(long, value_name = "STRESS", allow_hyphen_values = true)]
+    pub young: Option<Pascals>,
     /// Dimensions of the waves: 2 is a section, of a bed of spheres the one at `--slice`; 3 is the whole bed [default: 2].
     #[arg(long, value_name = "2|3")]
     pub dimension: Option<Dimension>,
@@ -165,6 +176,7 @@ impl SceneArgs {
         match self.packing.as_deref().map(|path| (path.to_str(), path)) {
             None => {}
             Some((Some("rsa"), _)) => spec.packing.method = PackingMethod::Rsa,
+            Some((Some("dem"), _)) => spec.packing.method = PackingMethod::Dem,
             Some((Some("random-addition"), _)) => spec.packing.method = PackingMethod::RandomAddition,
             Some((_, file)) => {
                 spec.packing.method = PackingMethod::File;
@@ -173,6 +185,14 @@ impl SceneArgs {
         }
         if let Some(BoxSize([length, depth, height])) = self.box_size {
             (spec.tank.width, spec.tank.depth, spec.tank.height) = (length, Some(depth), height);
+        }
+        set(&mut spec.tank.height, self.height);
+        if spec.packing.method == PackingMethod::Dem || self.stones.is_some() || self.young.is_some() {
+            let how = spec.packing.dem.get_or_insert_default();
+            set(&mut how.young, self.young);
+            if let Some(stones) = self.stones {
+                how.stones = Some(stones.get());
+            }
         }
         set(&mut spec.grid.dimension, self.dimension);
         if self.slice.is_some() {

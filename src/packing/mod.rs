@@ -22,6 +22,7 @@ mod optimise;
 mod porosity;
 mod rsa;
 mod run;
+pub mod settle;
 mod statistics;
 mod void_cells;
 

@@ -216,7 +216,7 @@ impl Builder {
         self.voids(scene, placement);
         let [left, floor] = placement.bed_origin;
         let (bed, depth) = (&scene.bed, self.model.grid.spacing[2]);
-        for disc in scene.discs() {
+        for disc in scene.discs().iter().filter(|disc| is_drawn(scene, disc)) {
             let stone = if disc.y < bed.fouled_height { &bed.stone_fouled } else { &bed.stone_clean };
             let material = self.material(stone);
             let (x, y) = (left + disc.x, floor + disc.y);
@@ -291,6 +291,12 @@ impl Builder {
         }));
         self.model.receivers.push(Receiver { position: placement.receiver, name: None });
     }
+}
+
+/// A section cuts some stones so near their rim that the disc may hold no cell's centre (radius below half a diagonal), which
+/// painting refuses. They are left out: of stones of 22 to 63 mm in cells of 5 mm that is 0.03 % of their area.
+fn is_drawn(scene: &Scene, disc: &Disc) -> bool {
+    scene.spheres.is_none() || disc.radius >= scene.spec.grid.cell.si() * std::f64::consts::FRAC_1_SQRT_2
 }
 
 /// From where to where the bed reaches along z; in a section the one cell.

@@ -95,6 +95,11 @@ pub enum SceneError {
     /// A bed without walls in a tank with them.
     #[error("the bed repeats itself, and the tank has walls\n\nhint: pack it without `--periodic`")]
     PeriodicBed,
+    /// A bed that nobody has settled yet.
+    #[error(
+        "the bed of this scene has to settle first (`method = \"dem\"`), which takes its time\n\nhint: `ballast-gpr build --packing dem --out FOLDER` settles and keeps it, then use FOLDER"
+    )]
+    NotSettled,
     /// Discs where spheres are needed.
     #[error(
         "the packing `{method}` is one of discs, and space has three dimensions\n\nhint: `--dimension 2`, or spheres: `--method dem` or `--method random-addition`"

@@ -20,6 +20,7 @@ pub use error::SceneError;
 pub use fouling::{FoulingAmount, FoulingReport};
 pub use medium::{MaterialSpec, Medium};
 pub use resolve::{Scene, resolve, resolve_with, rsa_input};
+pub use sample::settle_input;
 pub use spec::{
     AntennaSpec, Dimension, EquivalentStone, FoulingSpec, GeometryKind, GradingSpec, GridSpec, MoistureSpec,
     PackingMethod, PackingSpec, SceneSpec, Smoothing, TankSpec,

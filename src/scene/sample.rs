@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::files;
 use crate::packing::export::{self, Particles};
+use crate::packing::settle::SettleInput;
 use crate::packing::spheres::{RandomAddition, random_addition};
 use crate::packing::{self, Packing, Porosity, RsaOutcome, SlicePlane, SphereBed};
 use crate::units::{Metres, Share};
@@ -48,6 +49,7 @@ pub(super) fn take(spec: &SceneSpec, voids: Porosity, given: Option<SphereBed>) 
             };
             of_spheres(spec, random_addition(&input, spec.seed)?)
         }
+        PackingMethod::Dem => Err(SceneError::NotSettled),
         PackingMethod::File => {
             let file = spec.packing.file.as_ref().ok_or(SceneError::NoPackingFile)?;
             match read(file, spec.tank.width)? {
@@ -66,6 +68,20 @@ fn in_a_plane(spec: &SceneSpec) -> Result<(), SceneError> {
         Dimension::Two => Ok(()),
         Dimension::Three => Err(SceneError::DiscsInSpace { method: spec.packing.method.name() }),
     }
+}
+
+/// What the bed of a scene is settled from, for `method = "dem"`.
+///
+/// # Errors
+/// When there is no built-in sieve curve of the name given.
+pub fn settle_input(spec: &SceneSpec) -> Result<SettleInput, SceneError> {
+    Ok(SettleInput {
+        size: [spec.tank.width, spec.tank.inner_depth(), spec.tank.height],
+        periodic: [false; 2],
+        grading: spec.packing.grading.curve()?,
+        class_reading: spec.packing.class_reading,
+        how: spec.packing.dem.unwrap_or_default(),
+    })
 }
 
 /// A bed as it is, with the section through it where the waves travel in a plane.

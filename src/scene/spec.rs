@@ -6,6 +6,7 @@ use std::path::Path;
 use crate::files;
 use crate::material::{FinesPassing, JudgedBy, MixingModel};
 use crate::model::{Order, WaveformKind};
+use crate::packing::settle::SettleSpec;
 use crate::packing::{ClassReading, Grading, InputRule, PackingError};
 use crate::units::{Hertz, Metres, Seconds, Share};
 
@@ -92,6 +93,8 @@ pub enum PackingMethod {
     Homogeneous,
     /// Discs or spheres read from `packing.file`.
     File,
+    /// Spheres that fell into the tank and came to rest.
+    Dem,
     /// Spheres at random places in space, none touching another: a loose bed, under 38 % solid.
     RandomAddition,
 }
@@ -103,6 +106,7 @@ impl PackingMethod {
             Self::Rsa => "rsa",
             Self::Homogeneous => "homogeneous",
             Self::File => "file",
+            Self::Dem => "dem",
             Self::RandomAddition => "random-addition",
         }
     }
@@ -167,6 +171,9 @@ pub struct PackingSpec {
     /// Share of the box that random addition fills with stone, 30 % when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub solid_share: Option<Share>,
+    /// How spheres settle, for `method = "dem"`; kept with a bed that was settled so.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dem: Option<SettleSpec>,
     /// Where a section cuts a bed of spheres, from its front; the middle when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub slice: Option<Metres>,
@@ -193,6 +200,7 @@ impl Default for PackingSpec {
             input: InputRule::default(),
             strip: Metres(0.02),
             solid_share: None,
+            dem: None,
             slice: None,
             file: None,
             stone: "limestone".into(),
@@ -431,7 +439,7 @@ impl TankSpec {
 
 impl SceneSpec {
     /// Names of the built-in scenes.
-    pub const PRESETS: [&str; 1] = ["tank"];
+    pub const PRESETS: [&str; 2] = ["tank", "bed"];
 
     /// A built-in scene by its name.
     ///
@@ -440,8 +448,22 @@ impl SceneSpec {
     pub fn preset(name: &str) -> Result<Self, SceneError> {
         match name {
             "tank" => Ok(Self::default()),
+            "bed" => Ok(Self::bed()),
             _ => Err(SceneError::UnknownPreset { name: name.into(), known: Self::PRESETS.join(", ") }),
         }
+    }
+
+    /// A piece of the tank small enough to be simulated in space within minutes: 50 x 30 x 48 cm of settled spheres. The
+    /// absorbing boundary begins at the walls, so that nothing goes round the bed through the air, and the antenna is 20 cm
+    /// above it.
+    fn bed() -> Self {
+        let mut spec = Self { title: "Piece of the ballast tank".into(), ..Self::default() };
+        (spec.tank.width, spec.tank.depth, spec.tank.margin) = (Metres(0.5), Some(Metres(0.3)), Metres(0.0));
+        (spec.packing.method, spec.packing.dem) = (PackingMethod::Dem, Some(SettleSpec::default()));
+        spec.antenna.height = Metres(0.2);
+        (spec.grid.cell, spec.grid.time_window) = (Metres(0.005), Seconds(13e-9));
+        (spec.grid.dimension, spec.grid.smoothing) = (Dimension::Three, Smoothing::Shapes);
+        spec
     }
 
     /// Reads a scene from TOML text; `origin` names it in messages.
@@ -489,6 +511,12 @@ const ASSUMED: &[(&str, &str, &str)] = &[
     ("grid", "cell", "assumed: not published"),
     ("grid", "absorbing_cells", "assumed: gprMax's default"),
     ("fouling", "porosity", "assumed: not published; enters masses only"),
+    ("packing.dem", "young", "assumed: softened; the paper has 17.7 GPa"),
+    ("packing.dem", "time_step", "assumed: share of the Rayleigh time"),
+    ("packing.dem", "column", "assumed: solid share of the column that falls"),
+    ("packing.dem", "energy_ratio", "assumed: what counts as rest"),
+    ("packing.dem", "unbalanced_ratio", "assumed: what counts as rest"),
+    ("packing.dem", "longest", "assumed: longest simulated time of a stage"),
 ];
 
 fn annotate(toml: &str) -> String {

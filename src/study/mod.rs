@@ -3,6 +3,7 @@
 mod case;
 mod cost;
 mod cost_space;
+mod dimension;
 mod echoes;
 pub mod experiments;
 mod statistics;
@@ -13,5 +14,6 @@ pub use cost::{
     cost_of,
 };
 pub use cost_space::CostBed;
+pub use dimension::{DimensionError, DimensionRow, DimensionTable, DimensionTrace, compare_dimensions};
 pub use echoes::{EchoError, EchoTime, Echoes, PlateReference, plate_reference, simulate_echoes};
 pub use statistics::{MeanAndSpread, fit_exponent};

@@ -1,6 +1,7 @@
 //! `cost`: what accuracy costs in time, measured on this machine.
 
 mod accuracy;
+mod dimension;
 mod growth;
 mod packing;
 mod roofline;
@@ -18,7 +19,8 @@ use crate::units::Metres;
 pub struct CostArgs {
     /// What to measure: `fdtd2d` and `fdtd3d`, the built-in solver over cell size, smoothing, order and precision; `packing`, the random
     /// sequential adsorption over the number of stones; `growth`, the built-in solver's time over the number of cells in two
-    /// and three dimensions, beside what the machine's memory can give.
+    /// and three dimensions, beside what the machine's memory can give; `dimension`, a settled bed in space against sections
+    /// through it and against discs: what two dimensions cost in accuracy and three in time.
     #[arg(value_enum)]
     pub solver: CostName,
     /// fdtd2d, fdtd3d: finest cell; the others are its doubles up to 8 mm (10 mm in three dimensions). The defaults take
@@ -31,6 +33,13 @@ pub struct CostArgs {
     /// growth: leave out grids of more cells [default: up to 27 million, which take 1 GB and minutes].
     #[arg(long, value_name = "NUM")]
     pub cells: Option<usize>,
+    /// dimension: scene file, or a folder that `build` or `pack` has written, with spheres [default: the preset `bed`, which
+    /// is settled first].
+    #[arg(long, value_name = "SCENE.toml|FOLDER")]
+    pub scene: Option<PathBuf>,
+    /// dimension: sections through the bed, and as many packings of discs.
+    #[arg(long, value_name = "NUM", default_value_t = 5)]
+    pub slices: usize,
     /// Folder for table (CSV, JSON) and figure [default: none are written].
     #[arg(long, value_name = "FOLDER")]
     pub out: Option<PathBuf>,
@@ -56,6 +65,8 @@ pub enum CostName {
     Packing,
     /// Growth of the solver's time with the number of cells.
     Growth,
+    /// A bed in space, sections through it, and discs.
+    Dimension,
 }
 
 /// Runs the subcommand.
@@ -71,5 +82,6 @@ pub fn run(args: &CostArgs) -> Result<(), CliError> {
         CostName::Fdtd3d => accuracy::run_space(args),
         CostName::Packing => packing::run(args),
         CostName::Growth => growth::run(args),
+        CostName::Dimension => dimension::run(args),
     }
 }
