@@ -99,6 +99,7 @@ impl Cells {
         let mut starts = Vec::with_capacity(places.len() + 1);
         let mut partners = Vec::with_capacity(4 * places.len());
         starts.push(0);
+        let periodic = period.any();
         let mut ranges = [(0, 0); 27];
         for cell in 0..self.starts.len().saturating_sub(1) {
             let mine = self.starts[cell] as usize..self.starts[cell + 1] as usize;
@@ -126,7 +127,10 @@ impl Cells {
                 for &(from, to) in &ranges[..found] {
                     let after = from.max(i + 1)..to.max(i + 1);
                     for (j, other) in after.clone().zip(&places[after]) {
-                        let d = period.nearest([0, 1, 2].map(|k| place.0[k] - other.0[k]));
+                        let mut d = [0, 1, 2].map(|k| place.0[k] - other.0[k]);
+                        if periodic {
+                            d = period.nearest(d);
+                        }
                         let reach = place.w() + other.w() + skin;
                         if d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach {
                             partners.push(j as u32);

@@ -113,6 +113,7 @@ impl Simulation {
             return Err(not_one("it is damaged: its lists do not fit together".into()));
         }
         made.walls.finish_moving(&made.bodies);
+        made.note_turns();
         made.fit_mesh_grids(made.radii[1] + made.list.skin);
         Ok(made)
     }

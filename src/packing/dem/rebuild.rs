@@ -14,10 +14,10 @@ use crate::units::Metres;
 /// The first skin over the smallest radius.
 const FIRST_SKIN: f64 = 0.08;
 /// Least and greatest skin over the smallest radius.
-const SKINS: [f64; 2] = [0.01, 0.5];
+const SKINS: [f64; 2] = [0.01, 1.0];
 /// A list that lasts fewer steps gets a wider skin, one that lasts more a narrower one. Making a list costs about as much as
 /// five steps of a settled bed.
-const LASTING: [u64; 2] = [100, 2000];
+const LASTING: [u64; 2] = [150, 2000];
 
 /// A grain that has left the domain.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -86,6 +86,7 @@ impl Simulation {
         let mut cells = Cells::new(&self.grains.place, reach, self.periodic);
         let order = cells.sort(&self.grains.place);
         self.grains.reorder(&order);
+        self.note_turns();
         let (starts, partners) = cells.pairs(&self.grains.place, skin, &Period::new(self.periodic));
         self.pairs = Pairs::new(starts, partners, self.needs());
         self.pairs.remember(&self.grains, &pair_memory);
@@ -94,6 +95,15 @@ impl Simulation {
         self.walls.remember(&self.grains, &wall_memory);
         self.list =
             ListState { skin, made_at: self.step, travel: 0.0, body_travel: 0.0, place: self.grains.place.clone() };
+    }
+
+    /// Notes which turn each grain has.
+    pub(super) fn note_turns(&mut self) {
+        self.turns.clear();
+        self.turns.resize(self.count, u32::MAX);
+        for (turn, &id) in self.grains.id.iter().enumerate() {
+            self.turns[id as usize] = turn as u32;
+        }
     }
 
     /// Makes the grids over the meshes, if there are none for this reach.

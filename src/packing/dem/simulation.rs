@@ -59,6 +59,8 @@ pub struct Simulation {
     pub(super) step: u64,
     pub(super) lost: Vec<Lost>,
     pub(super) watch: Watch,
+    /// The turn of each grain by its number; `u32::MAX` of the lost.
+    pub(super) turns: Vec<u32>,
     /// Torque of the rolling friction of each grain, where it is kept.
     pub(super) rolling_torque: Vec<Four>,
     pub(super) keep_rolling_torque: bool,
@@ -158,6 +160,7 @@ impl Simulation {
             step: 0,
             lost: vec![],
             watch: Watch::default(),
+            turns: vec![],
             rolling_torque: vec![],
             keep_rolling_torque: false,
             count: 0,
@@ -322,7 +325,7 @@ impl Simulation {
 
     /// The turn of a grain; none when it is lost or there never was one.
     pub(super) fn turn_of(&self, grain: usize) -> Option<usize> {
-        self.grains.id.iter().position(|&id| id as usize == grain)
+        self.turns.get(grain).map(|&turn| turn as usize).filter(|&turn| turn < self.grains.len())
     }
 
     /// Switches friction on or off; contacts start without tangential force.
