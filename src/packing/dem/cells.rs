@@ -8,6 +8,9 @@ pub struct Cells {
     lower: [f64; 3],
     per_metre: [f64; 3],
     count: [usize; 3],
+    /// The axes, the one with most cells first: cells along it are furthest apart in memory, so that the slice of cells
+    /// between two neighbours along it is as small as can be.
+    axes: [usize; 3],
     periodic: [bool; 3],
     starts: Vec<u32>,
 }
@@ -48,16 +51,22 @@ impl Cells {
             if size > 0.0 { count[k] as f64 / size } else { 0.0 }
         });
         let periodic = [periodic[0].is_some(), periodic[1].is_some(), false];
-        Self { lower, per_metre, count, periodic, starts: vec![] }
+        let mut axes = [2, 1, 0];
+        axes.sort_by_key(|&k| std::cmp::Reverse(count[k]));
+        Self { lower, per_metre, count, axes, periodic, starts: vec![] }
     }
 
     fn cell_along(&self, k: usize, at: f64) -> usize {
         (((at - self.lower[k]) * self.per_metre[k]) as usize).min(self.count[k] - 1)
     }
 
+    /// The number of a cell from its places along the axes.
+    fn index(&self, [far, middle, near]: [usize; 3]) -> usize {
+        (far * self.count[self.axes[1]] + middle) * self.count[self.axes[2]] + near
+    }
+
     fn cell(&self, place: &Four) -> usize {
-        let [x, y, z] = [0, 1, 2].map(|k| self.cell_along(k, place.0[k]));
-        (z * self.count[1] + y) * self.count[0] + x
+        self.index(self.axes.map(|k| self.cell_along(k, place.0[k])))
     }
 
     /// Gives the order of the places by cell, stable; afterwards the grid is that of the places in this order.
@@ -106,14 +115,14 @@ impl Cells {
             if mine.is_empty() {
                 continue;
             }
-            let [nx, ny, _] = self.count;
-            let near = [cell % nx, cell / nx % ny, cell / nx / ny];
-            let [xs, ys, zs] = [0, 1, 2].map(|k| self.beside(k, near[k]));
+            let [_, middles, nears] = self.axes.map(|k| self.count[k]);
+            let at = [cell / nears / middles, cell / nears % middles, cell % nears];
+            let [zs, ys, xs] = [0, 1, 2].map(|n| self.beside(self.axes[n], at[n]));
             let mut found = 0;
             for &z in &zs.0[..zs.1] {
                 for &y in &ys.0[..ys.1] {
                     for &x in &xs.0[..xs.1] {
-                        let other = (z * ny + y) * nx + x;
+                        let other = self.index([z, y, x]);
                         let (from, to) = (self.starts[other] as usize, self.starts[other + 1] as usize);
                         if to > from.max(mine.start) {
                             ranges[found] = (from, to);
