@@ -367,17 +367,17 @@ mod tests {
     use super::*;
     use crate::fdtd::InstructionSet;
     use crate::model::{
-        DebyePole, Excitation, Grid, HertzianDipole, Material, MaterialId, Model, Object, Receiver, Source, TimeWindow,
-        Waveform, WaveformKind, paint3,
+        DebyePole, Excitation, Grid, HertzianDipole, MagneticDipole, Material, MaterialId, Model, Object, Receiver,
+        Source, TimeWindow, VoltageSource, Waveform, WaveformKind, paint3,
     };
 
-    /// Any model: several sources along any axis that begin late, receivers anywhere, conductors, loss, Debye media, magnetic
-    /// ones, absorbing cells on some sides, a palette small or too large for a table.
+    /// Any model: several sources of every kind along any axis that begin late, receivers anywhere, conductors, loss, Debye
+    /// media of one pole and of two, magnetic ones, absorbing cells on some sides, a palette small or too large for a table.
     pub fn any_model() -> impl Strategy<Value = Model> {
         let node = prop::array::uniform3(0usize..1000);
         let objects =
-            prop::collection::vec((0usize..6, node.clone(), prop::array::uniform3(1usize..14), any::<bool>()), 0..6);
-        let sources = prop::collection::vec((node.clone(), 0usize..3, 0usize..40), 0..4);
+            prop::collection::vec((0usize..7, node.clone(), prop::array::uniform3(1usize..14), any::<bool>()), 0..6);
+        let sources = prop::collection::vec((node.clone(), 0usize..4, 0usize..3, 0usize..40), 0..4);
         let receivers = prop::collection::vec(node, 0..4);
         let pml = prop::array::uniform6(0usize..4);
         let cells = [1usize..16, 2usize..18, 2usize..50];
@@ -400,13 +400,15 @@ mod tests {
                 let ore = Material { mu_r: 1.5, sigma_magnetic: 10.0, ..Material::dielectric("ore", 3.0, 0.0) };
                 let mut materials = vec![MaterialId::PEC];
                 let lossy = Material::dielectric("lossy", 4.0, 0.2);
-                for material in [lossy, Material::dielectric("dense", 9.0, 0.0), wet, ore] {
+                let poles = vec![DebyePole { delta_eps: 2.0, tau: 9e-12 }];
+                let damp = Material { poles, ..Material::dielectric("damp", 3.5, 0.0) };
+                for material in [lossy, Material::dielectric("dense", 9.0, 0.0), wet, ore, damp] {
                     materials.push(model.add_material(material));
                 }
                 for (kind, at, size, averaging) in objects {
                     let lower = place(at, 0, 0);
                     let upper = std::array::from_fn(|a| lower[a] + size[a] as f64 * grid.spacing[a]);
-                    let material = if kind < 5 { materials[kind] } else { MaterialId::FREE_SPACE };
+                    let material = if kind < 6 { materials[kind] } else { MaterialId::FREE_SPACE };
                     model.objects.push(Object::Box { lower, upper, material, averaging });
                 }
                 if many {
@@ -424,14 +426,17 @@ mod tests {
                     amplitude: 1.0,
                     frequency: 3e9,
                 });
-                for (at, axis, late) in sources {
-                    let dipole = HertzianDipole {
-                        polarisation: axis_of(axis),
-                        position: place(at, 1, 0),
-                        waveform: 0,
-                        excitation: Excitation { start: late as f64 * 4e-12, stop: None },
-                    };
-                    model.sources.push(Source::HertzianDipole(dipole));
+                for (at, kind, axis, late) in sources {
+                    let (polarisation, position, waveform) = (axis_of(axis), place(at, 1, 0), 0);
+                    let excitation = Excitation { start: late as f64 * 4e-12, stop: None };
+                    let voltage =
+                        |resistance| VoltageSource { polarisation, position, resistance, waveform, excitation };
+                    model.sources.push(match kind {
+                        0 => Source::HertzianDipole(HertzianDipole { polarisation, position, waveform, excitation }),
+                        1 => Source::MagneticDipole(MagneticDipole { polarisation, position, waveform, excitation }),
+                        2 => Source::VoltageSource(voltage(50.0)),
+                        _ => Source::VoltageSource(voltage(0.0)),
+                    });
                 }
                 let receiver = |at| Receiver { position: place(at, 0, 1), name: None };
                 model.receivers = receivers.into_iter().map(receiver).collect();
