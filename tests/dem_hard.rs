@@ -216,6 +216,13 @@ fn a_heap_lies_still_for_a_million_steps() {
         assert!(simulation.kinetic_energy() < 1e-12, "{} J", simulation.kinetic_energy());
     }
     assert!((simulation.grain(4).unwrap().sphere.centre[2] - height).abs() < 1e-8);
+    // A new list of neighbours changes nothing of what is told: the top stone is borne by four.
+    let contacts = simulation.contacts();
+    simulation.set_present(0, true).unwrap();
+    assert_eq!(simulation.contacts(), contacts);
+    let bearing = contacts.iter().filter(|contact| contact.grains[1] == 4);
+    let borne: f64 = bearing.map(|contact| -contact.force[2]).sum();
+    assert!((borne / (mass(radius) * 9.81) - 1.0).abs() < 1e-3, "{borne} N");
     assert!(simulation.unbalanced_force_ratio() < 1e-3, "{}", simulation.unbalanced_force_ratio());
 }
 
@@ -298,6 +305,10 @@ fn a_free_plate_rests_on_stones() {
     assert!((loads[1].force[2] / 98.1 - 1.0).abs() < 1e-4, "{:?}", loads[1]);
     let weight = 4.0 * mass(radius) * 9.81;
     assert!((loads[0].force[2] / -(98.1 + weight) - 1.0).abs() < 1e-4, "{:?}", loads[0]);
+    // A new list of neighbours changes nothing of what is told.
+    let (contacts, ratio) = (simulation.contacts(), simulation.unbalanced_force_ratio());
+    simulation.set_present(2, false).unwrap();
+    assert_eq!((simulation.contacts(), simulation.unbalanced_force_ratio()), (contacts, ratio));
     // Taken away, the stones bear themselves only.
     simulation.set_present(1, false).unwrap();
     simulation.run_quietly(10_000, ONE).unwrap();

@@ -4,7 +4,7 @@
 //! `cargo bench --bench dem` for all tables; `-- own` leaves the peers out, `-- peers` everything else; `-- quick` takes a
 //! tenth of the steps.
 
-use ballast_gpr::packing::dem::{Setup, Simulation};
+use ballast_gpr::packing::dem::{Grain, Setup, Simulation, Stuff, TimeStep};
 
 #[path = "support/dem_beds.rs"]
 mod dem_beds;
@@ -55,6 +55,7 @@ fn main() {
     }
     if !said("peers") {
         against_number(&tile, share);
+        against_stiffness(&tile, share);
     }
 }
 
@@ -88,7 +89,7 @@ fn compare(scene: &Scene, peers: &[Peer], threads: usize) {
 }
 
 /// Time of a step against the number of stones, and the exponent between neighbours in the table.
-fn against_number(tile: &[ballast_gpr::packing::dem::Grain], share: u64) {
+fn against_number(tile: &[Grain], share: u64) {
     println!("\n| stones | contacts | particle-steps/s on 2 threads | ns a stone and step | exponent of the time |");
     println!("|---|---|---|---|---|");
     let mut before: Option<(f64, f64)> = None;
@@ -104,5 +105,24 @@ fn against_number(tile: &[ballast_gpr::packing::dem::Grain], share: u64) {
         });
         println!("| {count} | {} | {rate:.3e} | {:.1} | {exponent} |", simulation.contacts().len(), 1e9 / rate);
         before = Some((count as f64, time));
+    }
+}
+
+/// What a second of a bed costs for the four moduli of Irazábal et al. 2017, each with a fifth of its Rayleigh time.
+fn against_stiffness(tile: &[Grain], share: u64) {
+    println!(
+        "\n| modulus of Young GPa | time step µs | particle-steps/s on 2 threads | wall time of 1 s of 5000 stones, s |"
+    );
+    println!("|---|---|---|---|");
+    for young in [5.9e9, 11.8e9, 17.7e9, 23.6e9] {
+        let mut setup = bed(tile, [1, 1]);
+        setup.stuffs = vec![Stuff { young, ..Stuff::BALLAST }];
+        setup.time_step = TimeStep::ShareOfRayleigh(0.2);
+        let mut simulation = must(Simulation::new(setup));
+        rate(&mut simulation, 200, 2);
+        let rate = median((0..3).map(|_| rate(&mut simulation, 2000 / share, 2)).collect());
+        let step = simulation.step_length().seconds;
+        let second = simulation.count() as f64 / (rate * step);
+        println!("| {:.1} | {:.2} | {rate:.3e} | {second:.0} |", 1e-9 * young, 1e6 * step);
     }
 }

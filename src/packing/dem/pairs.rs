@@ -88,8 +88,8 @@ impl Pairs {
             let (a, b) = (grains.id[i], grains.id[self.partner[pair] as usize]);
             let sign = if a < b { 1.0 } else { -1.0 };
             let turned = |array: &[Four]| array.get(pair).map_or(Four::default(), |four| flip(*four, sign));
-            let (history, rolling) = (turned(&self.history), turned(&self.rolling));
-            kept.push(Kept { ids: [a.min(b), a.max(b)], history, rolling });
+            let (history, rolling, force) = (turned(&self.history), turned(&self.rolling), turned(&self.force));
+            kept.push(Kept { ids: [a.min(b), a.max(b)], history, rolling, force });
         }
         kept.sort_unstable_by_key(|kept| kept.ids);
         PairMemory(kept)
@@ -105,6 +105,7 @@ impl Pairs {
                 let Ok(found) = memory.0.binary_search_by_key(&ids, |kept| kept.ids) else { continue };
                 let kept = &memory.0[found];
                 self.touching[pair] = 1;
+                self.force[pair] = flip(kept.force, sign);
                 if let Some(history) = self.history.get_mut(pair) {
                     *history = flip(kept.history, sign);
                 }
@@ -125,6 +126,8 @@ struct Kept {
     ids: [u32; 2],
     history: Four,
     rolling: Four,
+    /// For reports between this step and the next.
+    force: Four,
 }
 
 /// What contacts remember while the grains change their order, seen from the grain of the lower number.
