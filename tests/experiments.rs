@@ -191,3 +191,22 @@ fn templates_are_complete() {
     let told = place.json(&["experiment", "rolling-sphere", "--json"]);
     assert!(told["readings"]["flat-eta0.2-bounded_stop_s"].as_f64().unwrap() > 0.5);
 }
+
+/// The full tier of `validate irazabal2017` has a place for every figure: its file and the program name the same.
+#[test]
+fn the_full_tier_names_its_figures() {
+    let text = include_str!("../validation/irazabal2017/full.toml");
+    let case = ballast_gpr::study::Case::read("irazabal2017", text).unwrap();
+    let mut wanted: Vec<String> = ["0_20", "0_25", "0_30"]
+        .iter()
+        .flat_map(|eta| ["", "_cone", "_spread"].map(|what| format!("repose_{eta}{what}")))
+        .collect();
+    wanted.push("repose_grows".into());
+    wanted.extend(
+        ["stones", "peak_kn", "peak_mm", "bottom_start_percent", "bottom_3mm_percent"].map(|w| format!("lateral_{w}")),
+    );
+    let mut found: Vec<String> = case.expected.iter().map(|expected| expected.key.clone()).collect();
+    wanted.sort();
+    found.sort();
+    assert_eq!(found, wanted);
+}

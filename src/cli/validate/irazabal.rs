@@ -118,19 +118,23 @@ fn repose() -> Result<BTreeMap<String, f64>, CliError> {
     let template = ExperimentName::Repose.template();
     let (mut ours, mut means) = (BTreeMap::new(), vec![]);
     for (name, eta) in [("0_20", 0.20), ("0_25", 0.25), ("0_30", 0.30)] {
-        let mut angles = vec![];
+        let (mut angles, mut cones) = (vec![], vec![]);
         for seed in 1..=SEEDS {
             let mut spec = Specified::read(ExperimentName::Repose, template, Path::new("template"))?;
             spec.set_seed(seed)?;
             if let Specified::Repose(spec) = &mut spec {
                 spec.stone.rolling_friction = eta;
             }
-            angles.extend(in_sight(&spec, None, None, true)?.reading("angle_degrees"));
+            let outcome = in_sight(&spec, None, None, true)?;
+            angles.extend(outcome.reading("angle_degrees"));
+            cones.extend(outcome.reading("cone_degrees"));
         }
         let spread = MeanAndSpread::of(&angles);
         let mean = spread.map_or(f64::NAN, |spread| spread.mean);
         means.push(mean);
         ours.insert(format!("repose_{name}"), mean);
+        let cone = MeanAndSpread::of(&cones).map_or(f64::NAN, |spread| spread.mean);
+        ours.insert(format!("repose_{name}_cone"), cone);
         ours.insert(format!("repose_{name}_spread"), spread.map_or(f64::NAN, |spread| spread.standard_deviation));
     }
     ours.insert("repose_grows".into(), f64::from(means.windows(2).all(|pair| pair[1] > pair[0])));

@@ -286,6 +286,8 @@ fn read_off(spec: &ReposeSpec, bench: &Bench<'_>) -> ReposeResult {
     if let Some(slope) = &slope {
         readings.push(Reading::new("angle_degrees", "angle of repose, degrees", slope.degrees, 2));
         readings.push(Reading::new("spread_degrees", "its standard deviation between sectors", slope.spread, 2));
+        let cone = "angle of the cone of the same height and volume, degrees";
+        readings.push(Reading::new("cone_degrees", cone, slope.cone_degrees, 2));
         readings.push(Reading::new("height_m", "height of the heap, m", slope.height, 3));
     }
     readings.push(Reading::new("kept_back", "stones kept back by an arch", kept_back.len() as f64, 0));

@@ -275,5 +275,11 @@ pub fn run(spec: &RollingSphereSpec, running: &Running<'_>) -> Result<Outcome, E
         tell("spin_rest_rad_per_s", "largest spin in the last fifth, rad/s", run.spin_at_rest, 6);
         tell("sign_changes", "changes of sign of the torque at rest", run.sign_changes as f64, 0);
     }
-    Ok(Outcome { experiment: NAME.into(), readings, curve, notes: vec![], stones: vec![] })
+    let mut notes = vec!["samples: after the first step, then every ten".to_owned()];
+    if runs.iter().any(|run| run.model == RollingName::A && run.sign_changes > 0) {
+        notes.push(
+            "model A at rest turns its torque round from step to step; every tenth may show but one side of it".into(),
+        );
+    }
+    Ok(Outcome { experiment: NAME.into(), readings, curve, notes, stones: vec![] })
 }

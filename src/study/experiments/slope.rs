@@ -5,6 +5,9 @@
 //! diameter, in each of eight sectors. The height of the heap is the highest such mean within one diameter of the axis; in each
 //! sector a straight line is fitted to the rings that lie between 20 % and 80 % of that height, inside the first ring that
 //! falls below 20 %. The angle of repose is the mean of the eight slopes' angles.
+//!
+//! Heaps have a rounded top and a foot that runs out, so that this middle is their steepest part; beside it stands the angle of
+//! the cone of the same height and volume.
 
 use crate::geometry::Sphere;
 
@@ -22,6 +25,8 @@ pub struct Slope {
     pub spread: f64,
     /// Angle of each sector, degrees; NaN, as `null`, where fewer than three rings lie on the slope.
     pub sectors: Vec<Option<f64>>,
+    /// Slope of the cone that has the height of the heap and the volume under its surface, degrees.
+    pub cone_degrees: f64,
     /// Height of the heap, m.
     pub height: f64,
     /// Mean height over all sectors, by the radius of each ring, m.
@@ -100,9 +105,13 @@ fn fit(sums: &[[f64; 2]], rings: usize, ring: f64, diameter: f64) -> Option<Slop
             line(&slope).map(|fall| (-fall).atan().to_degrees())
         })
         .collect();
+    // Rings of a disc: 2 pi r dr; a cone of volume V and height h has the radius sqrt(3 V/(pi h)).
+    let volume: f64 =
+        profile.iter().filter(|[_, z]| z.is_finite()).map(|[r, z]| std::f64::consts::TAU * r * ring * z).sum();
+    let cone_degrees = (height / (3.0 * volume / (std::f64::consts::PI * height)).sqrt()).atan().to_degrees();
     let found: Vec<f64> = sectors.iter().flatten().copied().collect();
     let spread = crate::study::MeanAndSpread::of(&found)?;
-    Some(Slope { degrees: spread.mean, spread: spread.standard_deviation, sectors, height, profile })
+    Some(Slope { degrees: spread.mean, spread: spread.standard_deviation, sectors, cone_degrees, height, profile })
 }
 
 /// Slope of the straight line through points, by least squares; `None` with fewer than three.
@@ -143,6 +152,8 @@ mod tests {
             let found = measure(&stones, axis).unwrap();
             assert!((found.degrees - degrees).abs() < 0.5, "{degrees}: {found:?}");
             assert!(found.sectors.iter().all(|sector| sector.is_some_and(|angle| (angle - degrees).abs() < 1.0)));
+            // A skin of half a stone makes the cone wider at its foot.
+            assert!((found.cone_degrees - degrees).abs() < 2.0, "{degrees}: {}", found.cone_degrees);
             assert!((found.height - height).abs() < 0.02, "{}", found.height);
         }
     }
