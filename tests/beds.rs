@@ -176,3 +176,30 @@ fn what_cannot_be_is_refused() {
     let error = SceneSpec::from_toml("[grid]\ndimension = 4\n", Path::new("mine.toml")).unwrap_err().to_string();
     assert!(error.contains("4 is no dimension of a model") && error.contains("`dimension = 3`"), "{error}");
 }
+
+/// An embedded piece has no walls: base plate and mixture reach from boundary to boundary, the piece's voids are cut out of
+/// them as a box of air, and the balls follow.
+#[test]
+fn an_embedded_piece_has_no_sides() {
+    let mut spec = small();
+    (spec.tank.wall, spec.tank.embedded) = (Metres(0.0), true);
+    let scene = resolve(&spec).unwrap();
+    let model = build_model(&scene).unwrap();
+    let painted = paint3(&model).unwrap();
+    let [_, ny, nz] = painted.cells;
+    let at = |i: usize, j: usize, k: usize| model.materials[painted.solid[(i * ny + j) * nz + k].index()].id.as_str();
+    // Four cells of plate, two of base, fifty of bed; above it air.
+    for (j, name) in [(3, "pec"), (4, "methacrylate"), (6, "clean_ballast"), (55, "clean_ballast"), (56, "free_space")]
+    {
+        assert_eq!(at(0, j, nz / 2), name);
+        assert_eq!(at(painted.cells[0] / 2, j, 0), name);
+    }
+    let names = |k: usize| (14..74).flat_map(move |i| (6..56).map(move |j| (i, j, k)));
+    let mixture = names(nz / 2).filter(|(i, j, k)| at(*i, *j, *k) == "clean_ballast").count();
+    assert_eq!(mixture, 0, "no mixture within the piece");
+    spec.tank.wall = Metres(0.01);
+    assert_eq!(
+        resolve(&spec).unwrap_err().to_string(),
+        "`tank.wall` is 0.01 m, but must be 0 m where `embedded = true`\n\nhint: `wall = \"0 m\"` under `[tank]`"
+    );
+}

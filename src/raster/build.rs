@@ -139,6 +139,10 @@ impl Builder {
             self.add_box([0.0, width], [0.0, placement.plate_height], MaterialId::PEC);
         }
         let wall_material = self.material(&scene.wall);
+        if tank.embedded {
+            self.surroundings(scene, placement);
+            return;
+        }
         let (wall, right) = (tank.wall.si(), left + tank.width.si());
         let [front, back] = bed_depth(scene, placement);
         // In a section the one cell is all the depth there is.
@@ -154,6 +158,23 @@ impl Builder {
                 self.add_solid([left, right], [floor, top], [front - wall, front], wall_material);
                 self.add_solid([left, right], [floor, top], [back, back + wall], wall_material);
             }
+        }
+    }
+
+    /// Base plate and mixture of the bed as far as the model reaches; stones and what lies between them come over it.
+    fn surroundings(&mut self, scene: &Scene, placement: &Placement) {
+        let tank = &scene.spec.tank;
+        let floor = placement.bed_origin[1];
+        let x = [0.0, placement.grid.cells[0] as f64 * placement.grid.spacing[0]];
+        let (middle, top) = (floor + scene.bed.fouled_height, floor + tank.height.si());
+        let layers = [
+            ([floor - tank.base.si(), floor], &scene.wall),
+            ([floor, middle], &scene.bed.bulk_fouled),
+            ([middle, top], &scene.bed.bulk_clean),
+        ];
+        for (y, medium) in layers.into_iter().filter(|(y, _)| y[1] > y[0]) {
+            let material = self.material(medium);
+            self.add_box(x, y, material);
         }
     }
 
@@ -192,7 +213,8 @@ impl Builder {
             let fines = self.material(&bed.void_fouled);
             self.add_solid(x, [floor, floor + bed.fouled_height], z, fines);
         }
-        if !bed.void_clean.is_air() {
+        // In a mixture air has to be cut out.
+        if !bed.void_clean.is_air() || scene.spec.tank.embedded {
             let void = self.material(&bed.void_clean);
             self.add_solid(x, [floor + bed.fouled_height, floor + scene.spec.tank.height.si()], z, void);
         }

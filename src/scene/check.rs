@@ -13,6 +13,13 @@ pub(super) fn check(spec: &SceneSpec) -> Result<(), SceneError> {
     not_negative("tank.wall", tank.wall)?;
     not_negative("tank.base", tank.base)?;
     not_negative("tank.margin", tank.margin)?;
+    require(
+        !tank.embedded || tank.wall.si() == 0.0,
+        "tank.wall",
+        &tank.wall,
+        "0 m where `embedded = true`",
+        "`wall = \"0 m\"` under `[tank]`",
+    )?;
     positive("grid.cell", spec.grid.cell, "`--cell 2mm`")?;
     positive("antenna.height", spec.antenna.height, "`height = \"40 cm\"` under `[antenna]`")?;
     not_negative("antenna.separation", spec.antenna.separation)?;

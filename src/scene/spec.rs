@@ -66,6 +66,14 @@ pub struct TankSpec {
     pub margin: Metres,
     /// Whether a metal plate lies below the tank.
     pub metal_plate: bool,
+    /// Whether the bed goes on beyond the tank as a mixture without stones, as far as the model reaches, in place of walls and
+    /// air: a piece that is narrower than what the antenna lights then shows no sides.
+    #[serde(skip_serializing_if = "is_off")]
+    pub embedded: bool,
+}
+
+const fn is_off(embedded: &bool) -> bool {
+    !*embedded
 }
 
 impl Default for TankSpec {
@@ -79,6 +87,7 @@ impl Default for TankSpec {
             wall_material: "methacrylate".into(),
             margin: Metres(0.10),
             metal_plate: true,
+            embedded: false,
         }
     }
 }
@@ -453,12 +462,12 @@ impl SceneSpec {
         }
     }
 
-    /// A piece of the tank small enough to be simulated in space within minutes: 50 x 30 x 48 cm of settled spheres. The
-    /// absorbing boundary begins at the walls, so that nothing goes round the bed through the air, and the antenna is 20 cm
-    /// above it.
+    /// A piece of the tank small enough to be simulated in space within minutes: 50 x 30 x 48 cm of settled spheres. Beyond it
+    /// the bed goes on as a mixture: the antenna, 20 cm above, lights more than the piece, and walls would guide the waves.
     fn bed() -> Self {
         let mut spec = Self { title: "Piece of the ballast tank".into(), ..Self::default() };
-        (spec.tank.width, spec.tank.depth, spec.tank.margin) = (Metres(0.5), Some(Metres(0.3)), Metres(0.0));
+        (spec.tank.width, spec.tank.depth) = (Metres(0.5), Some(Metres(0.3)));
+        (spec.tank.wall, spec.tank.margin, spec.tank.embedded) = (Metres(0.0), Metres(0.10), true);
         (spec.packing.method, spec.packing.dem) = (PackingMethod::Dem, Some(SettleSpec::default()));
         spec.antenna.height = Metres(0.2);
         (spec.grid.cell, spec.grid.time_window) = (Metres(0.005), Seconds(13e-9));
