@@ -46,6 +46,7 @@ pub(super) fn run(args: &CostArgs) -> Result<(), CliError> {
     }
     report.print();
     println!("plate echo of a plane wave through the bed as a mixture: {:.3} ns", table.mixture_ns);
+    println!("the echo's time is that of its envelope's peak: in space the pulse has two extrema of like size");
     println!("± is the standard deviation of single runs; times are wall times of one run on this machine as it was");
     if let Some(settled) = &settled {
         for line in settle::told(settled) {
@@ -70,23 +71,24 @@ fn report(table: &DimensionTable) -> Report {
         "voids, %",
         "plate echo, ns",
         "late by, ns",
-        "by envelope, ns",
+        "by waveform, ns",
         "its amplitude",
         "not picked",
         "cells",
         "s a run",
     ];
     let mut report = Report::new("The same bed in space, in sections and as discs", head);
-    let truth = table.rows.first().and_then(|row| row.plate_ns).map(|of| of.mean);
+    let truth = table.rows.first().and_then(|row| row.plate_envelope_ns).map(|of| of.mean);
     for row in &table.rows {
-        let late = row.plate_ns.zip(truth).map_or("–".into(), |(of, truth)| format!("{:+.3}", of.mean - truth));
+        let late =
+            row.plate_envelope_ns.zip(truth).map_or("–".into(), |(of, truth)| format!("{:+.3}", of.mean - truth));
         report.row([
             row.name.into(),
             row.seconds.count.to_string(),
             spread(row.voids_percent, 2),
-            spread(row.plate_ns, 3),
-            late,
             spread(row.plate_envelope_ns, 3),
+            late,
+            spread(row.plate_ns, 3),
             spread(row.amplitude, 3),
             row.not_picked.to_string(),
             row.cells.to_string(),
