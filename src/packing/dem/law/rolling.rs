@@ -8,7 +8,9 @@ use crate::packing::dem::vector::{dot, norm, scale, sub};
 pub enum Rolling {
     /// Not at all: no torque of resistance is computed.
     None,
-    /// Bounded rolling friction (Irazábal, Salazar & Oñate 2017): see [`bounded`].
+    /// Bounded rolling friction (Irazábal, Salazar & Oñate 2017): once per grain, `Σ min(η_i R_i, η_j R_j) |Fn|` against
+    /// `I ω/dt` plus the moment of its contacts, and at most as much as stops it within the step. Eq. 9 of the paper prints
+    /// `I ω dt` for `I ω/dt`, opposite signs in that sum, and opposite directions in its two branches.
     #[default]
     Bounded,
     /// Model A of Ai et al. 2011: a constant torque against the relative spin at each contact. It chatters at rest.
