@@ -24,7 +24,7 @@
 //! |---|---|---|
 //! | [`units`] | quantities as users write them, physical constants | – |
 //! | [`files`] | write-then-rename, nearest names | – |
-//! | [`trace`] | A-scans and sets of traces | units |
+//! | [`trace`] | A-scans, B-scans and sets of traces | units |
 //! | [`geometry`] | discs, their neighbours, areas | units |
 //! | [`material`] | dielectrics, mixing rules, named materials, fouling indices | units, files |
 //! | [`model`] | what a solver needs; painting objects into cells; effects | units, geometry, material |
@@ -34,6 +34,7 @@
 //! | [`forward`] | the trait of all solvers | units, trace, model |
 //! | [`gprmax`] | its input files, its HDF5 files, running it | units, trace, material, model, geometry, forward, files |
 //! | [`fdtd`] | the built-in solver | units, trace, material, model, forward, files |
+//! | [`measured`] | files of radar instruments, read and written | units, files, trace |
 //! | [`compare`] | time zero, resampling, picks, misfits | units, trace |
 //! | [`study`] | published cases, ensembles, accuracy against cost, experiments with spheres | units, files, trace, geometry, material, model, packing, scene, raster, forward, compare |
 //! | [`plot`] | figures from plain data | units, files |
@@ -62,6 +63,7 @@ pub mod forward;
 pub mod geometry;
 pub mod gprmax;
 pub mod material;
+pub mod measured;
 pub mod model;
 pub mod packing;
 pub mod plot;

@@ -17,6 +17,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("forward", &["units", "trace", "model"]),
     ("gprmax", &["units", "trace", "material", "model", "geometry", "forward", "files"]),
     ("fdtd", &["units", "trace", "material", "model", "forward", "files"]),
+    ("measured", &["units", "files", "trace"]),
     ("compare", &["units", "trace"]),
     (
         "study",

@@ -1,0 +1,1 @@
+//! Files of radar instruments, read and written.
