@@ -8,8 +8,8 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use ballast_gpr::study::experiments::{
-    ExperimentError, JOURNAL, LateralSpec, OedometerSpec, PluviationSpec, ReposeSpec, Running, STATE, Told,
-    run_lateral, run_oedometer, run_pluviation, run_repose,
+    ExperimentError, ExperimentSpec as _, JOURNAL, LateralSpec, OedometerSpec, PluviationSpec, ReposeSpec, Running,
+    STATE, Told, run_lateral, run_oedometer, run_pluviation, run_repose,
 };
 
 /// Softened a hundred times: steps ten times as long.
@@ -28,7 +28,7 @@ fn quietly() -> Running<'static> {
 }
 
 fn small_heap() -> ReposeSpec {
-    let text = soft(ReposeSpec::TEMPLATE).replace("stones = 1200", "stones = 200");
+    let text = soft(ReposeSpec::TEMPLATE).replace("stones = 600", "stones = 200");
     ReposeSpec::read(&text, Path::new("heap.toml")).unwrap()
 }
 
@@ -73,6 +73,13 @@ fn a_heap_that_was_stopped_goes_on_to_the_same_bits() {
     let running = Running { keep_in: kept, fresh: false, ..quietly() };
     let error = run_repose(&other, &running).unwrap_err();
     assert!(matches!(error, ExperimentError::OtherSave { .. }), "{error}");
+
+    // Nor two runs at once.
+    let elsewhere = std::fs::File::open(folder.path()).unwrap();
+    elsewhere.lock().unwrap();
+    let error = run_repose(&spec, &running).unwrap_err();
+    assert!(matches!(error, ExperimentError::InUse { .. }), "{error}");
+    drop(elsewhere);
 
     let second = run_repose(&spec, &running).unwrap();
     assert_eq!(second, whole);
@@ -197,11 +204,11 @@ fn templates_are_complete() {
 fn the_full_tier_names_its_figures() {
     let text = include_str!("../validation/irazabal2017/full.toml");
     let case = ballast_gpr::study::Case::read("irazabal2017", text).unwrap();
-    let mut wanted: Vec<String> = ["0_20", "0_25", "0_30"]
+    let mut wanted: Vec<String> = ["0_20", "0_25", "0_30", "5_9_gpa", "11_8_gpa", "23_6_gpa", "1200_stones"]
         .iter()
-        .flat_map(|eta| ["", "_cone", "_spread"].map(|what| format!("repose_{eta}{what}")))
+        .flat_map(|heap| ["", "_cone", "_spread", "_kept_back"].map(|what| format!("repose_{heap}{what}")))
         .collect();
-    wanted.push("repose_grows".into());
+    wanted.extend(["repose_grows", "repose_over_moduli"].map(String::from));
     wanted.extend(
         ["stones", "peak_kn", "peak_mm", "bottom_start_percent", "bottom_3mm_percent"].map(|w| format!("lateral_{w}")),
     );

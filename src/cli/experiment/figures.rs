@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::cli::error::CliError;
 use crate::cli::experiment::Specified;
-use crate::plot::{Axis, Chart, Figure as _, Panels, Series, Stroke};
+use crate::plot::{Axis, Chart, Figure as _, PALETTE, Panels, Series, Stroke};
 use crate::study::experiments::{Curve, Outcome, SECTORS, measure_slope};
 
 const STROKES: [Stroke; 4] = [Stroke::Solid, Stroke::Dashed, Stroke::Dotted, Stroke::DashDotted];
@@ -26,7 +26,8 @@ pub fn write(out: &Path, spec: &Specified, outcome: &Outcome) -> Result<(), CliE
 
 fn line(curve: &Curve, [x, y]: [&str; 2], factors: [f64; 2], name: &str, index: usize) -> Series {
     let points = curve.points(x, y).into_iter().map(|(x, y)| (factors[0] * x, factors[1] * y)).collect();
-    Series::line(name, points).drawn(STROKES[index % STROKES.len()], index)
+    // A colour that comes back has another stroke.
+    Series::line(name, points).drawn(STROKES[(index + index / PALETTE.len()) % STROKES.len()], index)
 }
 
 /// Displacement and torque of all runs over time.

@@ -6,7 +6,8 @@ use clap::ValueEnum;
 
 use crate::cli::error::CliError;
 use crate::study::experiments::{
-    self, ExperimentError, LateralSpec, OedometerSpec, Outcome, PluviationSpec, ReposeSpec, RollingSphereSpec, Running,
+    self, ExperimentError, ExperimentSpec as _, LateralSpec, OedometerSpec, Outcome, PluviationSpec, ReposeSpec,
+    RollingSphereSpec, Running,
 };
 
 /// The experiments.
@@ -83,13 +84,14 @@ impl Specified {
         self.clone().seed_mut().copied()
     }
 
-    /// Sets the seed.
+    /// The same with another seed.
     ///
     /// # Errors
     /// When nothing is random.
-    pub fn set_seed(&mut self, seed: u64) -> Result<(), CliError> {
-        *self.seed_mut().ok_or_else(super::no_seed)? = seed;
-        Ok(())
+    pub fn with_seed(&self, seed: u64) -> Result<Self, CliError> {
+        let mut spec = self.clone();
+        *spec.seed_mut().ok_or_else(super::no_seed)? = seed;
+        Ok(spec)
     }
 
     /// Runs it.

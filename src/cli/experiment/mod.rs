@@ -3,6 +3,7 @@
 mod figures;
 mod files_of;
 mod kinds;
+mod sight;
 
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -12,14 +13,13 @@ use clap::{Args, ValueEnum as _};
 
 use crate::cli::error::CliError;
 use crate::cli::folder;
-use crate::cli::progress::Bar;
 use crate::cli::table::Report;
 use crate::files;
-use crate::forward::Progress;
 use crate::study::MeanAndSpread;
-use crate::study::experiments::{JOURNAL, Outcome, Running, Told};
+use crate::study::experiments::{JOURNAL, Outcome};
 
 pub use kinds::{ExperimentName, Specified};
+pub use sight::{in_sight, side_by_side};
 
 /// Test the mechanics of ballast: rolling ball, angle of repose, lateral resistance, oedometer, pluviation.
 ///
@@ -43,8 +43,8 @@ pub struct ExperimentArgs {
     /// Seed of sizes and places, in place of the file's.
     #[arg(long, value_name = "NUM")]
     pub seed: Option<u64>,
-    /// Run NUM times, seeds counted from the first, and tell mean and spread; each in a folder of its own, and those that are
-    /// there already are kept.
+    /// Run NUM times, seeds counted from the first, and tell mean and spread; side by side, one on each thread, each in a
+    /// folder of its own, and those that are there already are kept.
     #[arg(long, value_name = "NUM", default_value = "1")]
     pub seeds: NonZeroUsize,
     /// Threads; the result is the same on any number [default: one for each core].
@@ -74,27 +74,25 @@ pub fn run(args: &ExperimentArgs) -> Result<(), CliError> {
         Some(path) => (files::read_text(path)?, path.clone()),
         None => (args.name.template().to_owned(), PathBuf::from("template")),
     };
-    let mut spec = Specified::read(args.name, &text, &origin)?;
-    if let Some(seed) = args.seed {
-        spec.set_seed(seed)?;
-    }
+    let spec = Specified::read(args.name, &text, &origin)?;
+    let spec = args.seed.map(|seed| spec.with_seed(seed)).transpose()?.unwrap_or(spec);
     let name = args.name.to_possible_value().map_or(String::new(), |value| value.get_name().to_string());
     let out = args.out.clone().unwrap_or_else(|| name.into());
     if args.seeds.get() == 1 {
-        let outcome = run_one(args, &spec, &text, &out)?;
+        let outcome = run_one(args, &spec, &text, &out, |keep_in| in_sight(&spec, args.threads, keep_in, args.fresh))?;
         return show(args, &outcome, &out);
     }
     let first = spec.seed().ok_or_else(no_seed)?;
-    let mut outcomes = Vec::new();
-    for seed in first..first + args.seeds.get() as u64 {
-        spec.set_seed(seed)?;
-        let folder = out.join(format!("seed-{seed}"));
-        let outcome = match files_of::finished(&folder, &spec).filter(|_| !args.force) {
-            Some(outcome) => outcome,
-            None => run_one(args, &spec, &text, &folder)?,
-        };
-        outcomes.push(outcome);
-    }
+    let specs = (first..first + args.seeds.get() as u64)
+        .map(|seed| spec.with_seed(seed).map(|spec| (out.join(format!("seed-{seed}")), spec)))
+        .collect::<Result<Vec<_>, _>>()?;
+    let outcomes = side_by_side(specs.len(), args.threads, |index, place| {
+        let (folder, spec) = &specs[index];
+        match files_of::finished(folder, spec).filter(|_| !args.force) {
+            Some(outcome) => Ok(outcome),
+            None => run_one(args, spec, &text, folder, |keep_in| place.run(spec, keep_in, args.fresh)),
+        }
+    })?;
     show_ensemble(args, &outcomes, &out)
 }
 
@@ -103,40 +101,23 @@ pub fn no_seed() -> CliError {
     CliError::input("this experiment has nothing random in it\n\nhint: leave `--seed` and `--seeds` out")
 }
 
-fn run_one(args: &ExperimentArgs, spec: &Specified, text: &str, out: &Path) -> Result<Outcome, CliError> {
+fn run_one(
+    args: &ExperimentArgs,
+    spec: &Specified,
+    text: &str,
+    out: &Path,
+    run: impl FnOnce(Option<&Path>) -> Result<Outcome, CliError>,
+) -> Result<Outcome, CliError> {
     let goes_on = out.join(JOURNAL).exists() && !out.join(folder::MANIFEST).exists();
     folder::check_free(out, args.force || goes_on)?;
     if goes_on && !args.fresh {
         eprintln!("note: goes on from the state in `{}`", out.display());
     }
     let started = Instant::now();
-    let outcome = in_sight(spec, args.threads, Some(out), args.fresh)?;
+    let outcome = run(Some(out))?;
     folder::prepare(out, true)?;
     files_of::write(out, spec, text, &outcome, started.elapsed().as_secs_f64())?;
     Ok(outcome)
-}
-
-/// Runs an experiment with a bar that shows the stage and its energy ratio.
-///
-/// # Errors
-/// When it cannot be run.
-pub fn in_sight(
-    spec: &Specified,
-    threads: Option<NonZeroUsize>,
-    keep_in: Option<&Path>,
-    fresh: bool,
-) -> Result<Outcome, CliError> {
-    let bar = Bar::new("experiment");
-    let watch = |told: &Told| {
-        let progress = Progress { done: (1000.0 * told.share.clamp(0.0, 1.0)) as usize, total: 1000 };
-        bar.update_with(progress, || {
-            let lost = if told.lost > 0 { format!(", {} lost", told.lost) } else { String::new() };
-            format!("{}: energy {:.1e}, unbalanced {:.1e}{lost}", told.stage, told.energy_ratio, told.unbalanced)
-        })
-    };
-    let threads = threads.or_else(|| std::thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
-    let running = Running { threads, watch: &watch, keep_in: keep_in.map(Path::to_owned), fresh };
-    Ok(spec.run(&running)?)
 }
 
 fn show(args: &ExperimentArgs, outcome: &Outcome, out: &Path) -> Result<(), CliError> {

@@ -5,21 +5,31 @@ use std::num::NonZeroUsize;
 use std::path::Path;
 
 use crate::cli::error::{CliError, Kind};
-use crate::cli::experiment::{ExperimentName, Specified, in_sight};
+use crate::cli::experiment::{ExperimentName, Specified, in_sight, side_by_side};
 use crate::cli::interrupt;
 use crate::cli::validate::{CaseReport, Tier, report_of};
 use crate::packing::dem::Stuff;
 use crate::study::experiments::{
-    RollingName, RollingRun, RollingSphereSpec, Running, hertz_depth, hertz_duration, run_rolling_cases,
-    settle_on_floor, throw,
+    ExperimentSpec as _, RollingName, RollingRun, RollingSphereSpec, Running, hertz_depth, hertz_duration,
+    run_rolling_cases, settle_on_floor, throw,
 };
 use crate::study::{Case, MeanAndSpread};
-use crate::units::Metres;
+use crate::units::{Metres, Pascals, Seconds};
 
 const CASE: &str = include_str!("../../../validation/irazabal2017/case.toml");
 const FULL: &str = include_str!("../../../validation/irazabal2017/full.toml");
-/// Seeds for each coefficient of rolling friction in the full tier.
+/// Seeds for each coefficient of rolling friction and each modulus in the full tier.
 const SEEDS: u64 = 5;
+/// Heaps of the full tier: name, stones, coefficient of rolling friction, modulus in GPa and time step in µs (Table 2).
+const REPOSE: [(&str, usize, f64, f64, f64); 7] = [
+    ("0_20", 600, 0.20, 17.7, 5.0),
+    ("0_25", 600, 0.25, 17.7, 5.0),
+    ("0_30", 600, 0.30, 17.7, 5.0),
+    ("5_9_gpa", 600, 0.25, 5.9, 8.0),
+    ("11_8_gpa", 600, 0.25, 11.8, 6.0),
+    ("23_6_gpa", 600, 0.25, 23.6, 4.0),
+    ("1200_stones", 1200, 0.25, 17.7, 5.0),
+];
 /// Curves of KratosMultiphysics 10.4.4, by case and coefficient.
 const KRATOS: [(&str, f64, &str); 4] = [
     ("flat", 0.2, include_str!("../../../validation/brof/ai_case1_kratos_brof_eta0.2_R0.1.csv")),
@@ -113,31 +123,45 @@ fn contact() -> Result<BTreeMap<String, f64>, CliError> {
     ]))
 }
 
-/// Mean angles over the seeds, by coefficient, and whether they grow with it.
+/// Mean angles over the seeds, by coefficient and by modulus, and whether they grow with the coefficient.
 fn repose() -> Result<BTreeMap<String, f64>, CliError> {
-    let template = ExperimentName::Repose.template();
-    let (mut ours, mut means) = (BTreeMap::new(), vec![]);
-    for (name, eta) in [("0_20", 0.20), ("0_25", 0.25), ("0_30", 0.30)] {
-        let (mut angles, mut cones) = (vec![], vec![]);
+    let template = Specified::read(ExperimentName::Repose, ExperimentName::Repose.template(), Path::new("template"))?;
+    let Specified::Repose(template) = template else {
+        return Err(CliError::new(Kind::Fault, "the template of `repose` is one of another experiment"));
+    };
+    let mut runs = vec![];
+    for (name, stones, eta, young, step) in REPOSE {
         for seed in 1..=SEEDS {
-            let mut spec = Specified::read(ExperimentName::Repose, template, Path::new("template"))?;
-            spec.set_seed(seed)?;
-            if let Specified::Repose(spec) = &mut spec {
-                spec.stone.rolling_friction = eta;
-            }
-            let outcome = in_sight(&spec, None, None, true)?;
-            angles.extend(outcome.reading("angle_degrees"));
-            cones.extend(outcome.reading("cone_degrees"));
+            let mut spec = template.clone();
+            (spec.stones, spec.stone.rolling_friction, spec.stone.young) = (stones, eta, Pascals(1e9 * young));
+            (spec.run.time_step, spec.run.seed) = (Seconds(1e-6 * step), seed);
+            runs.push((name, Specified::Repose(spec)));
         }
-        let spread = MeanAndSpread::of(&angles);
-        let mean = spread.map_or(f64::NAN, |spread| spread.mean);
-        means.push(mean);
-        ours.insert(format!("repose_{name}"), mean);
-        let cone = MeanAndSpread::of(&cones).map_or(f64::NAN, |spread| spread.mean);
-        ours.insert(format!("repose_{name}_cone"), cone);
-        ours.insert(format!("repose_{name}_spread"), spread.map_or(f64::NAN, |spread| spread.standard_deviation));
     }
-    ours.insert("repose_grows".into(), f64::from(means.windows(2).all(|pair| pair[1] > pair[0])));
+    let outcomes = side_by_side(runs.len(), None, |index, place| place.run(&runs[index].1, None, true))?;
+    let mut ours = BTreeMap::new();
+    let mut tell = |name: &str, what: &str, of: &str| {
+        let of_name = runs.iter().zip(&outcomes).filter(|((run, _), _)| *run == name);
+        let found: Vec<f64> = of_name.filter_map(|(_, outcome)| outcome.reading(of)).collect();
+        let spread = MeanAndSpread::of(&found);
+        let mean = spread.map_or(f64::NAN, |spread| spread.mean);
+        ours.insert(format!("repose_{name}{what}"), mean);
+        (mean, spread.map_or(f64::NAN, |spread| spread.standard_deviation))
+    };
+    let mut spreads = vec![];
+    let mut means = vec![];
+    for (name, ..) in REPOSE {
+        let (mean, spread) = tell(name, "", "angle_degrees");
+        tell(name, "_cone", "cone_degrees");
+        tell(name, "_kept_back", "kept_back");
+        spreads.push((format!("repose_{name}_spread"), spread));
+        means.push(mean);
+    }
+    ours.extend(spreads);
+    ours.insert("repose_grows".into(), f64::from(means[..3].windows(2).all(|pair| pair[1] > pair[0])));
+    let of_moduli = [means[1], means[3], means[4], means[5]];
+    let [most, least] = [f64::max, f64::min].map(|of| of_moduli.into_iter().fold(of_moduli[0], of));
+    ours.insert("repose_over_moduli".into(), most - least);
     Ok(ours)
 }
 

@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
+use std::fs::{File, TryLockError};
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -85,6 +86,8 @@ pub(super) struct Bench<'a> {
     stop_asked: Cell<bool>,
     /// Weight of all stones times their mean diameter, J.
     scale: f64,
+    /// The folder, locked, once a state has been read from it or kept in it.
+    locked: Option<File>,
 }
 
 impl<'a> Bench<'a> {
@@ -97,6 +100,7 @@ impl<'a> Bench<'a> {
     ) -> Result<Self, ExperimentError> {
         let spec = serde_json::to_value(spec).unwrap_or_default();
         let kept = running.keep_in.as_deref().filter(|folder| !running.fresh && folder.join(JOURNAL).exists());
+        let locked = kept.map(lock).transpose()?.flatten();
         let (simulation, journal) = match kept {
             Some(folder) => go_on(folder, experiment, &spec)?,
             None => {
@@ -107,7 +111,7 @@ impl<'a> Bench<'a> {
             }
         };
         let scale = scale(&simulation);
-        Ok(Self { simulation, journal, running, kept: Instant::now(), stop_asked: Cell::new(false), scale })
+        Ok(Self { simulation, journal, running, kept: Instant::now(), stop_asked: Cell::new(false), scale, locked })
     }
 
     /// Exchanges the simulation for one of another set-up, whose time begins at zero.
@@ -241,6 +245,9 @@ impl<'a> Bench<'a> {
         let Some(folder) = self.running.keep_in.as_deref() else { return Ok(None) };
         self.journal.step = self.simulation.step();
         files::create_folder(folder)?;
+        if self.locked.is_none() {
+            self.locked = lock(folder)?;
+        }
         self.simulation.save(&folder.join(STATE))?;
         let text = serde_json::to_string(&self.journal).unwrap_or_default();
         files::write_bytes(&folder.join(JOURNAL), text.as_bytes())?;
@@ -274,6 +281,16 @@ impl<'a> Bench<'a> {
             notes.push(format!("{lost} stones have left the domain"));
         }
         notes
+    }
+}
+
+/// Keeps other runs out of a folder for as long as what is returned lives; `None` where a folder cannot be locked.
+fn lock(folder: &Path) -> Result<Option<File>, ExperimentError> {
+    let Ok(opened) = File::open(folder) else { return Ok(None) };
+    match opened.try_lock() {
+        Ok(()) => Ok(Some(opened)),
+        Err(TryLockError::WouldBlock) => Err(ExperimentError::InUse { folder: folder.into() }),
+        Err(TryLockError::Error(_)) => Ok(None),
     }
 }
 

@@ -62,6 +62,12 @@ pub enum ExperimentError {
         /// How this shows.
         what: String,
     },
+    /// A folder in which another run keeps its state.
+    #[error("another run keeps its state in `{}`\n\nhint: wait for its end, or choose another folder with `--out`", folder.display())]
+    InUse {
+        /// The folder.
+        folder: PathBuf,
+    },
     /// Stopped on request, with what has been reached kept.
     #[error("stopped on request after {seconds:.4} s of `{stage}`{kept}")]
     Stopped {

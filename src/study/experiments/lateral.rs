@@ -6,15 +6,13 @@
 //! 2. Friction is switched on; the sleeper is let down onto the bed with its weight, and all comes to rest.
 //! 3. The sleeper is pushed along x, free to rise and sink; it does not turn.
 
-use std::path::Path;
-
 use serde::{Deserialize, Serialize};
 
 use super::bench::{Bench, RestSpec, Running};
 use super::error::ExperimentError;
 use super::outcome::{Curve, Outcome, Reading};
 use super::placing::strew;
-use super::spec::{RunSpec, SizeSpec, StoneSpec, above_zero, read};
+use super::spec::{ExperimentSpec, RunSpec, SizeSpec, StoneSpec, above_zero};
 use crate::geometry::Sphere;
 use crate::geometry::triangle_mesh::{TriangleMesh, sleeper_block};
 use crate::packing::dem::{Grain, Motion, Pairing, Setup, Stuff, Wall};
@@ -104,19 +102,8 @@ pub struct PushSpec {
     pub sample: Metres,
 }
 
-impl LateralSpec {
-    /// The file to begin with.
-    pub const TEMPLATE: &str = include_str!("../../../templates/experiments/lateral.toml");
-
-    /// Reads and checks a file.
-    ///
-    /// # Errors
-    /// With the line, or the value that is out of range.
-    pub fn read(text: &str, file: &Path) -> Result<Self, ExperimentError> {
-        let spec: Self = read(text, file)?;
-        spec.check()?;
-        Ok(spec)
-    }
+impl ExperimentSpec for LateralSpec {
+    const TEMPLATE: &str = include_str!("../../../templates/experiments/lateral.toml");
 
     fn check(&self) -> Result<(), ExperimentError> {
         self.sizes.check(NAME)?;
@@ -157,7 +144,9 @@ impl LateralSpec {
         }
         Ok(())
     }
+}
 
+impl LateralSpec {
     /// Height of the crest, m: the crib is full.
     fn crest(&self) -> f64 {
         self.bed.under.si() + self.sleeper.height.si()

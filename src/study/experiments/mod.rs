@@ -30,4 +30,4 @@ pub use rolling_sphere::{
     RollingCaseSpec, RollingRun, RollingSphereSpec, run as run_rolling_sphere, run_cases as run_rolling_cases,
 };
 pub use slope::{SECTORS, Slope, measure as measure_slope};
-pub use spec::{EvenBy, RollingName, RunSpec, SizeSpec, StoneSpec};
+pub use spec::{EvenBy, ExperimentSpec, RollingName, RunSpec, SizeSpec, StoneSpec};

@@ -1,14 +1,12 @@
 //! A plate presses stones in a box and is drawn back: stress over strain, and the stress on the sides.
 
-use std::path::Path;
-
 use serde::{Deserialize, Serialize};
 
 use super::bench::{Bench, RestSpec, Running};
 use super::error::ExperimentError;
 use super::outcome::{Curve, Outcome, Reading};
 use super::placing::strew;
-use super::spec::{RunSpec, SizeSpec, StoneSpec, above_zero, read};
+use super::spec::{ExperimentSpec, RunSpec, SizeSpec, StoneSpec, above_zero};
 use crate::packing::dem::{Grain, Motion, Setup, Stuff, Wall};
 use crate::units::{Metres, MetresPerSecond, Pascals};
 
@@ -45,19 +43,8 @@ pub struct OedometerSpec {
     pub rest: RestSpec,
 }
 
-impl OedometerSpec {
-    /// The file to begin with.
-    pub const TEMPLATE: &str = include_str!("../../../templates/experiments/oedometer.toml");
-
-    /// Reads and checks a file.
-    ///
-    /// # Errors
-    /// With the line, or the value that is out of range.
-    pub fn read(text: &str, file: &Path) -> Result<Self, ExperimentError> {
-        let spec: Self = read(text, file)?;
-        spec.check()?;
-        Ok(spec)
-    }
+impl ExperimentSpec for OedometerSpec {
+    const TEMPLATE: &str = include_str!("../../../templates/experiments/oedometer.toml");
 
     fn check(&self) -> Result<(), ExperimentError> {
         self.sizes.check(NAME)?;
@@ -78,7 +65,9 @@ impl OedometerSpec {
         }
         Ok(())
     }
+}
 
+impl OedometerSpec {
     fn setup(&self) -> Setup {
         let width = self.width.si();
         let stones =

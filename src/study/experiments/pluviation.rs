@@ -1,7 +1,5 @@
 //! Stones rain into a box layer by layer: height, porosity and contacts after each layer.
 
-use std::path::Path;
-
 use serde::{Deserialize, Serialize};
 
 use super::bench::{Bench, RestSpec, Running};
@@ -9,7 +7,7 @@ use super::error::ExperimentError;
 use super::oedometer::boxed;
 use super::outcome::{Curve, Outcome, Reading};
 use super::placing::strew;
-use super::spec::{RunSpec, SizeSpec, StoneSpec, above_zero, read};
+use super::spec::{ExperimentSpec, RunSpec, SizeSpec, StoneSpec, above_zero};
 use crate::geometry::Sphere;
 use crate::packing::dem::{Grain, Setup, Stuff};
 use crate::units::Metres;
@@ -40,19 +38,8 @@ pub struct PluviationSpec {
     pub rest: RestSpec,
 }
 
-impl PluviationSpec {
-    /// The file to begin with.
-    pub const TEMPLATE: &str = include_str!("../../../templates/experiments/pluviation.toml");
-
-    /// Reads and checks a file.
-    ///
-    /// # Errors
-    /// With the line, or the value that is out of range.
-    pub fn read(text: &str, file: &Path) -> Result<Self, ExperimentError> {
-        let spec: Self = read(text, file)?;
-        spec.check()?;
-        Ok(spec)
-    }
+impl ExperimentSpec for PluviationSpec {
+    const TEMPLATE: &str = include_str!("../../../templates/experiments/pluviation.toml");
 
     fn check(&self) -> Result<(), ExperimentError> {
         self.sizes.check(NAME)?;
@@ -70,7 +57,9 @@ impl PluviationSpec {
         }
         Ok(())
     }
+}
 
+impl PluviationSpec {
     /// The bed and a layer above it.
     fn setup(&self, bed: Vec<Grain>, layer: usize) -> Setup {
         let (width, lowest) = (self.width.si(), top(&bed) + self.drop.si());

@@ -1,7 +1,5 @@
 //! The angle of repose: stones fall out of a square hopper onto a floor.
 
-use std::path::Path;
-
 use serde::{Deserialize, Serialize};
 
 use super::bench::{Bench, RestSpec, Running};
@@ -9,10 +7,10 @@ use super::error::ExperimentError;
 use super::outcome::{Curve, Outcome, Reading};
 use super::placing::strew;
 use super::slope::{self, Slope};
-use super::spec::{RunSpec, SizeSpec, StoneSpec, above_zero, read};
+use super::spec::{ExperimentSpec, RunSpec, SizeSpec, StoneSpec, above_zero};
 use crate::geometry::Sphere;
 use crate::geometry::triangle_mesh::{rectangle, square_hopper};
-use crate::packing::dem::{Grain, Motion, Setup, Wall};
+use crate::packing::dem::{Grain, Motion, Pairing, Setup, Stuff, Wall};
 use crate::units::{Metres, MetresPerSecond, Seconds};
 
 const NAME: &str = "repose";
@@ -54,6 +52,8 @@ pub struct HopperSpec {
     pub top: Metres,
     /// Slope of the walls, degrees from the horizontal.
     pub wall_degrees: f64,
+    /// Coefficient of sliding friction of stones on its walls; they do not resist rolling more or less than the floor.
+    pub friction: f64,
     /// Speed at which the gate drops away; faster than stones fall.
     pub gate_speed: MetresPerSecond,
 }
@@ -72,19 +72,8 @@ pub struct ArchSpec {
     pub shake_time: Seconds,
 }
 
-impl ReposeSpec {
-    /// The file to begin with.
-    pub const TEMPLATE: &str = include_str!("../../../templates/experiments/repose.toml");
-
-    /// Reads and checks a file.
-    ///
-    /// # Errors
-    /// With the line, or the value that is out of range.
-    pub fn read(text: &str, file: &Path) -> Result<Self, ExperimentError> {
-        let spec: Self = read(text, file)?;
-        spec.check()?;
-        Ok(spec)
-    }
+impl ExperimentSpec for ReposeSpec {
+    const TEMPLATE: &str = include_str!("../../../templates/experiments/repose.toml");
 
     fn check(&self) -> Result<(), ExperimentError> {
         self.sizes.check(NAME)?;
@@ -117,7 +106,9 @@ impl ReposeSpec {
         }
         Ok(())
     }
+}
 
+impl ReposeSpec {
     /// Height of the funnel, m.
     fn funnel(&self) -> f64 {
         0.5 * (self.hopper.top.si() - self.hopper.opening.si()) * self.hopper.wall_degrees.to_radians().tan()
@@ -148,8 +139,11 @@ impl ReposeSpec {
         let side = 1.2 * hopper.opening.si();
         let gate = rectangle([-0.5 * side, -0.5 * side, low], [side, 0.0, 0.0], [0.0, side, 0.0])?.named("gate");
         let stones = self.strewn().into_iter().map(Grain::at_rest).collect();
-        let mut setup = Setup::new(self.stone.stuff(), stones);
-        setup.walls = vec![Wall::plane([0.0; 3], [0.0, 0.0, 1.0], 0), Wall::mesh(funnel, 0), Wall::mesh(gate, 0)];
+        let stone = self.stone.stuff();
+        let mut setup = Setup::new(stone, stones);
+        setup.stuffs.push(Stuff { friction: hopper.friction, ..stone });
+        setup.pairings = vec![Pairing { materials: [0, 1], friction: Some(hopper.friction), restitution: None }];
+        setup.walls = vec![Wall::plane([0.0; 3], [0.0, 0.0, 1.0], 0), Wall::mesh(funnel, 1), Wall::mesh(gate, 1)];
         setup.time_step = self.run.step();
         setup.rolling = self.run.rolling.model();
         setup.domain = [[-20.0, -20.0, -1.0], [20.0, 20.0, 100.0]];

@@ -1,14 +1,12 @@
 //! Ai et al. 2011, cases 1 and 2: a ball thrown onto a floor and up a slope, with several models of rolling resistance.
 
-use std::path::Path;
-
 use serde::{Deserialize, Serialize};
 
 use super::bench::{Bench, Running};
 use super::closed_form::{Course, ThrownBall};
 use super::error::ExperimentError;
 use super::outcome::{Curve, Outcome, Reading};
-use super::spec::{RollingName, StoneSpec, above_zero, read};
+use super::spec::{ExperimentSpec, RollingName, StoneSpec, above_zero};
 use crate::geometry::Sphere;
 use crate::packing::dem::{Grain, Rolling, Setup, Simulation, TimeStep, Wall, WallContact};
 use crate::units::{Metres, MetresPerSecond, Seconds};
@@ -49,27 +47,21 @@ pub struct RollingCaseSpec {
     pub models: Vec<RollingName>,
 }
 
-impl RollingSphereSpec {
-    /// The file to begin with.
-    pub const TEMPLATE: &str = include_str!("../../../templates/experiments/rolling-sphere.toml");
+impl ExperimentSpec for RollingSphereSpec {
+    const TEMPLATE: &str = include_str!("../../../templates/experiments/rolling-sphere.toml");
 
-    /// Reads and checks a file.
-    ///
-    /// # Errors
-    /// With the line, or the value that is out of range.
-    pub fn read(text: &str, file: &Path) -> Result<Self, ExperimentError> {
-        let spec: Self = read(text, file)?;
+    fn check(&self) -> Result<(), ExperimentError> {
         above_zero(
             NAME,
             &[
-                ("radius", spec.radius.si(), spec.radius.to_string()),
-                ("speed", spec.speed.si(), spec.speed.to_string()),
-                ("gravity", spec.gravity, spec.gravity.to_string()),
-                ("duration", spec.duration.si(), spec.duration.to_string()),
-                ("time_step", spec.time_step.si(), spec.time_step.to_string()),
+                ("radius", self.radius.si(), self.radius.to_string()),
+                ("speed", self.speed.si(), self.speed.to_string()),
+                ("gravity", self.gravity, self.gravity.to_string()),
+                ("duration", self.duration.si(), self.duration.to_string()),
+                ("time_step", self.time_step.si(), self.time_step.to_string()),
             ],
         )?;
-        for case in &spec.cases {
+        for case in &self.cases {
             if !(0.0..60.0).contains(&case.slope_degrees) {
                 return Err(ExperimentError::OutOfRange {
                     experiment: NAME,
@@ -79,9 +71,11 @@ impl RollingSphereSpec {
                 });
             }
         }
-        Ok(spec)
+        Ok(())
     }
+}
 
+impl RollingSphereSpec {
     /// The closed form of a case.
     pub fn ball(&self, slope_degrees: f64, rolling_friction: f64) -> ThrownBall {
         let sphere = Sphere { centre: [0.0; 3], radius: self.radius.si() };

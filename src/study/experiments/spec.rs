@@ -174,9 +174,26 @@ impl RunSpec {
     }
 }
 
-/// Reads the TOML of an experiment; `file` names it in messages.
-pub(super) fn read<T: serde::de::DeserializeOwned>(text: &str, file: &Path) -> Result<T, ExperimentError> {
-    toml::from_str(text).map_err(|error| ExperimentError::toml(file, text, &error))
+/// The file of an experiment: all numbers it needs, in TOML.
+pub trait ExperimentSpec: Sized + serde::de::DeserializeOwned {
+    /// The file to begin with.
+    const TEMPLATE: &str;
+
+    /// Checks what can be known before anything runs.
+    ///
+    /// # Errors
+    /// With the value that is out of range.
+    fn check(&self) -> Result<(), ExperimentError>;
+
+    /// Reads and checks a file; `file` names it in messages.
+    ///
+    /// # Errors
+    /// With the line, or the value that is out of range.
+    fn read(text: &str, file: &Path) -> Result<Self, ExperimentError> {
+        let spec: Self = toml::from_str(text).map_err(|error| ExperimentError::toml(file, text, &error))?;
+        spec.check()?;
+        Ok(spec)
+    }
 }
 
 /// Refuses a value that is not above zero and finite.
