@@ -364,7 +364,7 @@ mod tests {
     /// 2.025 m² of section over 0.6 m, less 0.13 m³ of sleeper.
     #[test]
     fn the_bed_of_the_template_has_the_volume_worked_out_by_hand() {
-        let spec = LateralSpec::read(LateralSpec::TEMPLATE, Path::new("template")).unwrap();
+        let spec = LateralSpec::read(LateralSpec::TEMPLATE, std::path::Path::new("template")).unwrap();
         assert!((spec.bulk_volume() - (2.025 * 0.6 - 2.5 * 0.26 * 0.2)).abs() < 1e-12);
         assert!(spec.belongs(&Sphere { centre: [2.3, 0.0, 0.02], radius: 0.02 }));
         assert!(!spec.belongs(&Sphere { centre: [2.3, 0.0, 0.1], radius: 0.02 }));
