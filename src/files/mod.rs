@@ -4,6 +4,8 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use tempfile::NamedTempFile;
+
 /// A file or folder that could not be read or written.
 #[derive(Debug, thiserror::Error)]
 #[error("{action} `{}`: {source}", path.display())]
@@ -30,6 +32,22 @@ impl FileError {
 /// # Errors
 /// What the system or `fill` said, with the path.
 pub fn write_atomically(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
+    publish(staged(path, fill)?, path)
+}
+
+/// Writes several files that belong together: each as by [`write_atomically`], and none takes its place before all are safe
+/// on the disk.
+///
+/// # Errors
+/// What the system said, with the path.
+pub fn write_together(files: &[(&Path, &[u8])]) -> Result<(), FileError> {
+    let staged: Result<Vec<_>, _> =
+        files.iter().map(|(path, bytes)| staged(path, |writer| writer.write_all(bytes))).collect();
+    staged?.into_iter().zip(files).try_for_each(|(temporary, (path, _))| publish(temporary, path))
+}
+
+/// A temporary file beside the place of `path`, filled and safe on the disk.
+fn staged(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<NamedTempFile, FileError> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
     builder.prefix(".writing-").suffix(".partial");
@@ -43,6 +61,10 @@ pub fn write_atomically(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Re
     fill(&mut writer).and_then(|()| writer.flush()).map_err(FileError::of("write", path))?;
     drop(writer);
     sync(temporary.as_file()).map_err(FileError::of("write", path))?;
+    Ok(temporary)
+}
+
+fn publish(temporary: NamedTempFile, path: &Path) -> Result<(), FileError> {
     temporary.persist(path).map_err(|error| FileError { action: "write", path: path.into(), source: error.error })?;
     Ok(())
 }
@@ -103,6 +125,18 @@ mod tests {
         assert_eq!(error.to_string(), format!("write `{}`: no space left on device", path.display()));
         assert_eq!(fs::read(&path).unwrap(), b"old");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    /// The second of two cannot be written: the first is not there either.
+    #[test]
+    fn files_that_belong_together_come_together() {
+        let folder = tempfile::tempdir().unwrap();
+        let (one, other) = (folder.path().join("a.rd3"), folder.path().join("a.rad"));
+        write_together(&[(&one, b"1"), (&other, b"2")]).unwrap();
+        assert_eq!((fs::read(&one).unwrap(), fs::read(&other).unwrap()), (b"1".to_vec(), b"2".to_vec()));
+        let nowhere = folder.path().join("none/b.rad");
+        assert!(write_together(&[(&folder.path().join("b.rd3"), b"1"), (&nowhere, b"2")]).is_err());
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
     }
 
     #[test]
