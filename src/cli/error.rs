@@ -67,7 +67,7 @@ macro_rules! exit_codes {
 exit_codes! {
     Input: crate::packing::PackingError, crate::raster::RasterError, crate::compare::CompareError,
         crate::compare::text::TextError, crate::model::CheckError, crate::model::PaintError, crate::units::UnitError;
-    Input: crate::gprmax::GeometryWriteError, crate::model::SnapshotError;
+    Input: crate::gprmax::GeometryWriteError, crate::model::SnapshotError, crate::trace::BScanError;
     Fault: serde_json::Error, crate::study::CaseError;
 }
 
@@ -86,7 +86,8 @@ macro_rules! exit_codes_but_of_files {
 }
 
 exit_codes_but_of_files! {
-    Input: scene::SceneError, gprmax::InFileError, gprmax::WriteError, gprmax::hdf5::Hdf5Error;
+    Input: scene::SceneError, gprmax::InFileError, gprmax::WriteError, gprmax::hdf5::Hdf5Error,
+        measured::MeasuredError;
     GprMax: gprmax::InstallError;
     Fault: plot::PlotError, gprmax::OutputWriteError;
 }

@@ -8,6 +8,7 @@ mod checkpoint;
 mod child;
 mod compare;
 mod comparison_figure;
+mod convert;
 mod cost;
 mod cost_choice;
 mod demo;
@@ -17,6 +18,7 @@ mod explain;
 mod folder;
 mod geometry_files;
 mod gprmax;
+mod inspect;
 mod interrupt;
 mod manifest;
 mod map_figure;
@@ -65,6 +67,8 @@ enum Command {
     Run(run::RunArgs),
     Compare(compare::CompareArgs),
     Explain(explain::ExplainArgs),
+    Inspect(inspect::InspectArgs),
+    Convert(convert::ConvertArgs),
     Pack(pack::PackArgs),
     Validate(validate::ValidateArgs),
     Cost(cost::CostArgs),
@@ -87,6 +91,8 @@ pub fn main() -> ExitCode {
         Command::Run(args) => run::run(args),
         Command::Compare(args) => compare::run(args),
         Command::Explain(args) => explain::run(args),
+        Command::Inspect(args) => inspect::run(args),
+        Command::Convert(args) => convert::run(args),
         Command::Pack(args) => pack::run(args),
         Command::Validate(args) => validate::run(args),
         Command::Cost(args) => cost::run(args),

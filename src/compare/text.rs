@@ -151,66 +151,114 @@ const SECONDS_BELOW: f64 = 1e-3;
 /// # Errors
 /// No or one sample, what is no number (with its line), a column that is not there, times that do not rise or are uneven.
 pub fn read_trace(text: &str, name: &str, options: &TextOptions) -> Result<AScan, TextError> {
-    let text = text.trim_start_matches('\u{feff}');
-    let mut header: Option<Vec<String>> = None;
-    let mut comment_unit = None;
-    let mut rows: Vec<Row> = vec![];
-    let mut column = match &options.column {
-        Column::First => Some(1),
-        Column::Number(number) => Some(number.saturating_sub(1)),
-        Column::Named(_) => None,
-    };
-    let mut decimals = 0;
-    for (index, raw) in text.lines().enumerate() {
-        let line = index + 1;
-        let (content, comment) = split_comment(raw);
-        if rows.is_empty() && header.is_none() {
-            comment_unit = comment.and_then(bracketed_unit).or(comment_unit);
-        }
-        let fields = split_fields(content);
-        if fields.is_empty() {
-            continue;
-        }
-        if rows.is_empty() && header.is_none() && fields.iter().all(|f| f.parse::<f64>().is_err()) {
-            column = column.or_else(|| named_column(&options.column, &fields));
-            header = Some(fields);
-            continue;
-        }
-        let Some(wanted) = column else { return Err(no_such_column(name, &options.column, header.as_deref())) };
-        let (Some(time), Some(amplitude)) = (fields.first(), fields.get(wanted)) else {
-            let found = fields.len();
-            return Err(TextError::TooFewColumns { name: name.into(), line, found, wanted: wanted + 1 });
+    Table::read(text, name, Some(&options.column))?.trace(0, name, options.resample)
+}
+
+/// Reads every column of amplitude as a trace, all on the time axis of the first column.
+///
+/// The first line of numbers tells how many columns there are; each trace has the name of the text.
+///
+/// # Errors
+/// As [`read_trace`].
+pub fn read_traces(text: &str, name: &str, resample: Option<Seconds>) -> Result<Vec<AScan>, TextError> {
+    let table = Table::read(text, name, None)?;
+    (0..table.width).map(|column| table.trace(column, name, resample)).collect()
+}
+
+/// What a text holds: a time in each line, and as many amplitudes as are wanted.
+struct Table {
+    /// Line and time.
+    times: Vec<(usize, f64)>,
+    /// Amplitudes to a line.
+    width: usize,
+    /// Amplitudes, line by line.
+    values: Vec<f64>,
+    /// Unit of the times, s.
+    unit: f64,
+    /// Most decimals that a time has.
+    decimals: i32,
+}
+
+impl Table {
+    /// Reads the column of this name or number, or all behind the first.
+    fn read(text: &str, name: &str, choice: Option<&Column>) -> Result<Self, TextError> {
+        let text = text.trim_start_matches('\u{feff}');
+        let mut header: Option<Vec<String>> = None;
+        let mut comment_unit = None;
+        let mut times: Vec<(usize, f64)> = vec![];
+        let mut values = vec![];
+        let mut columns = match choice {
+            None | Some(Column::First) => Some(1..2),
+            Some(Column::Number(number)) => Some(number.saturating_sub(1)..number.saturating_sub(1) + 1),
+            Some(Column::Named(_)) => None,
         };
-        let number = |field: &str| {
-            let parsed = field.parse::<f64>().ok().filter(|v| v.is_finite());
-            parsed.ok_or_else(|| TextError::NotANumber {
-                name: name.into(),
-                line,
-                field: field.chars().take(40).collect(),
-            })
-        };
-        decimals = decimals.max(decimals_written(time));
-        rows.push(Row { line, time: number(time)?, amplitude: number(amplitude)? });
+        let mut decimals = 0;
+        for (index, raw) in text.lines().enumerate() {
+            let line = index + 1;
+            let (content, comment) = split_comment(raw);
+            if times.is_empty() && header.is_none() {
+                comment_unit = comment.and_then(bracketed_unit).or(comment_unit);
+            }
+            let fields = split_fields(content);
+            if fields.is_empty() {
+                continue;
+            }
+            if times.is_empty() && header.is_none() && fields.iter().all(|f| f.parse::<f64>().is_err()) {
+                let named = choice.and_then(|column| named_column(column, &fields));
+                columns = columns.or_else(|| named.map(|at| at..at + 1));
+                header = Some(fields);
+                continue;
+            }
+            if choice.is_none() && times.is_empty() {
+                columns = Some(1..fields.len().max(2));
+            }
+            let Some(wanted) = columns.clone() else { return Err(no_such_column(name, choice, header.as_deref())) };
+            let (Some(time), Some(amplitudes)) = (fields.first(), fields.get(wanted.clone())) else {
+                let found = fields.len();
+                return Err(TextError::TooFewColumns { name: name.into(), line, found, wanted: wanted.end });
+            };
+            let number = |field: &String| {
+                let parsed = field.parse::<f64>().ok().filter(|v| v.is_finite());
+                parsed.ok_or_else(|| TextError::NotANumber {
+                    name: name.into(),
+                    line,
+                    field: field.chars().take(40).collect(),
+                })
+            };
+            decimals = decimals.max(decimals_written(time));
+            times.push((line, number(time)?));
+            for amplitude in amplitudes {
+                values.push(number(amplitude)?);
+            }
+        }
+        match times.len() {
+            0 if columns.is_none() => return Err(no_such_column(name, choice, header.as_deref())),
+            0 => return Err(TextError::NoSamples { name: name.into() }),
+            1 => return Err(TextError::OneSample { name: name.into() }),
+            _ => {}
+        }
+        let header_unit = header.as_ref().and_then(|h| h.first()).and_then(|first| unit_word(first));
+        let largest = times.iter().fold(0.0_f64, |m, (_, time)| m.max(time.abs()));
+        let by_size = if largest < SECONDS_BELOW { 1.0 } else { 1e-9 };
+        let unit = header_unit.or(comment_unit).unwrap_or(by_size);
+        Ok(Self { width: values.len() / times.len(), times, values, unit, decimals })
     }
-    match rows.len() {
-        0 if column.is_none() => return Err(no_such_column(name, &options.column, header.as_deref())),
-        0 => return Err(TextError::NoSamples { name: name.into() }),
-        1 => return Err(TextError::OneSample { name: name.into() }),
-        _ => {}
+
+    /// The trace in one of its columns of amplitude.
+    fn trace(&self, column: usize, name: &str, resample: Option<Seconds>) -> Result<AScan, TextError> {
+        let amplitudes = self.values.iter().skip(column).step_by(self.width.max(1));
+        let row = |(&(line, time), &amplitude): (&(usize, f64), &f64)| Row { line, time, amplitude };
+        let rows: Vec<Row> = self.times.iter().zip(amplitudes).map(row).collect();
+        let (first, step, samples) = onto_even_axis(&rows, self.decimals, self.unit, name, resample)?;
+        Ok(AScan {
+            samples,
+            time_step: Seconds(step),
+            first_sample: Seconds(first),
+            component: Component::Recorded,
+            position: None,
+            name: name.into(),
+        })
     }
-    let header_unit = header.as_ref().and_then(|h| h.first()).and_then(|first| unit_word(first));
-    let largest = rows.iter().fold(0.0_f64, |m, row| m.max(row.time.abs()));
-    let by_size = if largest < SECONDS_BELOW { 1.0 } else { 1e-9 };
-    let unit = header_unit.or(comment_unit).unwrap_or(by_size);
-    let (first, step, samples) = onto_even_axis(&rows, decimals, unit, name, options.resample)?;
-    Ok(AScan {
-        samples,
-        time_step: Seconds(step),
-        first_sample: Seconds(first),
-        component: Component::Recorded,
-        position: None,
-        name: name.into(),
-    })
 }
 
 /// First time and step in s, and the samples.
@@ -328,15 +376,15 @@ fn named_column(column: &Column, header: &[String]) -> Option<usize> {
     }
 }
 
-fn no_such_column(name: &str, column: &Column, header: Option<&[String]>) -> TextError {
+fn no_such_column(name: &str, column: Option<&Column>, header: Option<&[String]>) -> TextError {
     let known = header.map_or_else(
         || "not named: the file has no header, so give a number".to_string(),
         |fields| fields.iter().skip(1).map(|f| format!("`{f}`")).collect::<Vec<_>>().join(", "),
     );
     let column = match column {
-        Column::Named(wanted) => wanted.clone(),
-        Column::First => "2".into(),
-        Column::Number(number) => number.to_string(),
+        Some(Column::Named(wanted)) => wanted.clone(),
+        Some(Column::First) | None => "2".into(),
+        Some(Column::Number(number)) => number.to_string(),
     };
     TextError::NoSuchColumn { name: name.into(), column, known }
 }
@@ -414,6 +462,15 @@ mod tests {
             with(Column::Number(4)).unwrap_err().to_string(),
             "line 2 of `x.txt` has 3 columns: column 4 is needed"
         );
+    }
+
+    #[test]
+    fn every_column_is_a_trace() {
+        let traces = read_traces("t_ns,a,b,c\n0,1,10,100\n1,2,20,200\n", "x.csv", None).unwrap();
+        let samples: Vec<_> = traces.iter().map(|trace| trace.samples.clone()).collect();
+        assert_eq!(samples, [[1.0, 2.0], [10.0, 20.0], [100.0, 200.0]]);
+        let error = read_traces("0 1 2\n1 2 3\n2 3\n", "x.csv", None).unwrap_err().to_string();
+        assert_eq!(error, "line 3 of `x.csv` has 2 columns: column 3 is needed");
     }
 
     #[test]

@@ -54,10 +54,10 @@ pub(super) fn is_window(nanoseconds: &f64) -> bool {
 }
 
 /// Puts traces at even distances along the line, where the header gives one above zero.
-pub(super) fn at_even_distances(radargram: BScan, distance: Option<f64>) -> BScan {
-    let Some(distance) = distance.filter(|d| *d > 0.0 && *d < 1e6) else { return radargram };
+pub(super) fn at_even_distances(radargram: BScan, distance: Option<f64>) -> Result<BScan, MeasuredError> {
+    let Some(distance) = distance.filter(|d| *d > 0.0 && *d < 1e6) else { return Ok(radargram) };
     let places = (0..radargram.count()).map(|k| [Metres(k as f64 * distance), Metres(0.0), Metres(0.0)]).collect();
-    radargram.clone().with_positions(places).unwrap_or(radargram)
+    Ok(radargram.with_positions(places)?)
 }
 
 /// Makes a radargram of what an instrument recorded; times in s.

@@ -82,7 +82,7 @@ pub(super) fn parse(header_path: &Path, header: &[u8], path: &Path, bytes: &[u8]
         bytes.samples(&field, at + TRACE_HEADER, points, SampleKind::Signed16, &mut samples)?;
     }
     let radargram = scan(samples, points, step, -(zero - 1.0) * step, name_of(path))?;
-    let placed = radargram.clone().with_positions(places).unwrap_or(radargram);
+    let placed = if places.len() == count { radargram.with_positions(places)? } else { radargram };
     let frequency = header.number("NOMINAL FREQUENCY")?.filter(|f| *f > 0.0);
     Ok(Recording {
         format: Format::Dt1,
@@ -90,7 +90,11 @@ pub(super) fn parse(header_path: &Path, header: &[u8], path: &Path, bytes: &[u8]
         channels: vec![placed],
         antenna: frequency.map(|f| format!("{f} MHz")),
         centre_frequency: frequency.map(|f| Hertz(1e6 * f)),
-        antenna_separation: header.number("ANTENNA SEPARATION")?.zip(unit).map(|(s, unit)| Metres(s * unit)),
+        antenna_separation: header
+            .number("ANTENNA SEPARATION")?
+            .filter(|s| *s > 0.0)
+            .zip(unit)
+            .map(|(s, unit)| Metres(s * unit)),
         header: header.all(),
         warnings,
     })

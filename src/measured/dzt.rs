@@ -111,7 +111,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<Recording, MeasuredErro
         let start = about.position / 1e9 + NO_SIGNAL as f64 * step;
         let name = if channels == 1 { name_of(path) } else { format!("{} channel {channel}", name_of(path)) };
         let radargram = scan(samples, first.samples - NO_SIGNAL, step, start, name)?;
-        radargrams.push(at_even_distances(radargram, Some(1.0 / per_metre)));
+        radargrams.push(at_even_distances(radargram, Some(1.0 / per_metre))?);
     }
     let name = |at| bytes.text("rh_antname", at, 14).unwrap_or_default();
     let antennas: Vec<String> = (0..channels)

@@ -90,7 +90,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<Recording, MeasuredErro
     Ok(Recording {
         format: Format::Ids,
         sample_kind: SampleKind::Signed16,
-        channels: vec![at_even_distances(scan(samples, points, step, 0.0, name_of(path))?, Some(distance))],
+        channels: vec![at_even_distances(scan(samples, points, step, 0.0, name_of(path))?, Some(distance))?],
         antenna: None,
         // The unit of `radar_freq` is not described: what is below 100000 can only be MHz.
         centre_frequency: (frequency > 0.0).then_some(Hertz(if frequency < 1e5 { 1e6 * frequency } else { frequency })),

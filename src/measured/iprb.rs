@@ -36,10 +36,10 @@ pub(super) fn parse(header_path: &Path, header: &[u8], path: &Path, bytes: &[u8]
     Ok(Recording {
         format: Format::Iprb,
         sample_kind: kind,
-        channels: vec![at_even_distances(radargram, header.number("USER DISTANCE INTERVAL")?)],
+        channels: vec![at_even_distances(radargram, header.number("USER DISTANCE INTERVAL")?)?],
         antenna: header.text("ANTENNA"),
         centre_frequency: None,
-        antenna_separation: header.number("ANTENNA SEPARATION")?.map(Metres),
+        antenna_separation: header.number("ANTENNA SEPARATION")?.filter(|s| *s > 0.0).map(Metres),
         header: header.all(),
         warnings,
     })

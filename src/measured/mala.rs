@@ -39,10 +39,10 @@ pub(super) fn parse(
     Ok(Recording {
         format,
         sample_kind: kind,
-        channels: vec![at_even_distances(radargram, header.number("DISTANCE INTERVAL")?)],
+        channels: vec![at_even_distances(radargram, header.number("DISTANCE INTERVAL")?)?],
         centre_frequency: antenna.as_deref().and_then(leading_megahertz),
         antenna,
-        antenna_separation: header.number("ANTENNA SEPARATION")?.map(Metres),
+        antenna_separation: header.number("ANTENNA SEPARATION")?.filter(|s| *s > 0.0).map(Metres),
         header: header.all(),
         warnings,
     })

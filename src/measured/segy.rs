@@ -72,7 +72,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<Recording, MeasuredErro
     let radargram = scan(samples, points, step, first_sample(&text), name_of(path))?;
     // Zeros everywhere are no positions.
     let known = places.iter().any(|place| place.iter().any(|c| c.si() != 0.0));
-    let placed = if known { radargram.clone().with_positions(places).unwrap_or(radargram) } else { radargram };
+    let placed = if known { radargram.with_positions(places)? } else { radargram };
     let mut header = vec![("byte order".to_owned(), order.name().to_owned())];
     header.push(("format code".into(), bytes.u16("format code", 3224)?.to_string()));
     let shown = text.into_iter().enumerate().filter(|(_, line)| line.len() > 3);

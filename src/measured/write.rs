@@ -1,6 +1,5 @@
 //! Writing radargrams so that other programs read them.
 
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use super::error::MeasuredError;
@@ -46,23 +45,34 @@ pub fn write_rd3(path: &Path, scan: &BScan, about: &About) -> Result<Written, Me
     let points = scan.samples_per_trace();
     let first = 1e9 * scan.first_sample.si();
     let note = format!("ballast-gpr amplitude of one count {amplitude:e}; {} {}", mala::FIRST_SAMPLE, number(first));
-    let mut header = String::new();
-    let mut line = |key: &str, value: String| {
-        let _ = write!(header, "{key}:{value}\r\n");
-    };
-    line("SAMPLES", points.to_string());
-    line("FREQUENCY", number(1e3 / step));
-    line("FREQUENCY STEPS", "1".into());
-    line("SIGNAL POSITION", "0".into());
-    line("DISTANCE FLAG", "1".into());
-    line("TIME FLAG", "0".into());
-    line("DISTANCE INTERVAL", number(spacing(scan).unwrap_or(0.0)));
-    line("ANTENNAS", antenna(about));
-    line("ANTENNA SEPARATION", number(about.antenna_separation.map_or(0.0, Metres::si)));
-    line("COMMENT", note);
-    line("TIMEWINDOW", number(step * points as f64));
-    line("STACKS", "1".into());
-    line("LAST TRACE", scan.count().to_string());
+    let unknown = String::new;
+    // Some readers count lines instead of reading keys, so all are there, in the order of the instrument.
+    let lines = [
+        ("SAMPLES", points.to_string()),
+        ("FREQUENCY", number(1e3 / step)),
+        ("FREQUENCY STEPS", "1".into()),
+        ("SIGNAL POSITION", "0".into()),
+        ("RAW SIGNAL POSITION", "0".into()),
+        ("DISTANCE FLAG", "1".into()),
+        ("TIME FLAG", "0".into()),
+        ("PROGRAM FLAG", "0".into()),
+        ("EXTERNAL FLAG", "0".into()),
+        ("TIME INTERVAL", "0".into()),
+        ("DISTANCE INTERVAL", number(spacing(scan).unwrap_or(0.0))),
+        ("OPERATOR", unknown()),
+        ("CUSTOMER", unknown()),
+        ("SITE", unknown()),
+        ("ANTENNAS", antenna(about)),
+        ("ANTENNA ORIENTATION", unknown()),
+        ("ANTENNA SEPARATION", number(about.antenna_separation.map_or(0.0, Metres::si))),
+        ("COMMENT", note),
+        ("TIMEWINDOW", number(step * points as f64)),
+        ("STACKS", "1".into()),
+        ("STACK EXPONENT", "0".into()),
+        ("STACKING TIME", "0".into()),
+        ("LAST TRACE", scan.count().to_string()),
+    ];
+    let header = lines.iter().map(|(key, value)| format!("{key}:{value}\r\n")).collect();
     let bytes = counts.iter().flat_map(|count| count.to_le_bytes()).collect::<Vec<_>>();
     pair(path, "rad", bytes, header, amplitude)
 }
@@ -79,22 +89,26 @@ pub fn write_dt1(path: &Path, scan: &BScan, about: &About) -> Result<Written, Me
     let (points, count) = (scan.samples_per_trace(), scan.count());
     let places: Vec<f64> = (0..count).map(|trace| distance(scan, trace)).collect();
     let zero = 1.0 - scan.first_sample.si() / scan.time_step.si();
-    let mut header = format!("1234\r\nwritten by ballast-gpr, amplitude of one count {amplitude:e}\r\n2000-01-01\r\n");
-    let mut line = |key: &str, value: String| {
-        let _ = write!(header, "{key:<18} = {value}\r\n");
-    };
-    line("NUMBER OF TRACES", count.to_string());
-    line("NUMBER OF PTS/TRC", points.to_string());
-    line("TIMEZERO AT POINT", number(zero));
-    line("TOTAL TIME WINDOW", number(step * points as f64));
-    line("STARTING POSITION", number(places.first().copied().unwrap_or(0.0)));
-    line("FINAL POSITION", number(places.last().copied().unwrap_or(0.0)));
-    line("STEP SIZE USED", number(spacing(scan).unwrap_or(0.0)));
-    line("POSITION UNITS", "m".into());
-    line("NOMINAL FREQUENCY", number(about.centre_frequency.map_or(0.0, |f| 1e-6 * f.si())));
-    line("ANTENNA SEPARATION", number(about.antenna_separation.map_or(0.0, Metres::si)));
-    line("NUMBER OF STACKS", "1".into());
-    line("SURVEY MODE", "Reflection".into());
+    let lines = [
+        ("NUMBER OF TRACES", count.to_string()),
+        ("NUMBER OF PTS/TRC", points.to_string()),
+        ("TIMEZERO AT POINT", number(zero)),
+        ("TOTAL TIME WINDOW", number(step * points as f64)),
+        ("STARTING POSITION", number(places.first().copied().unwrap_or(0.0))),
+        ("FINAL POSITION", number(places.last().copied().unwrap_or(0.0))),
+        ("STEP SIZE USED", number(spacing(scan).unwrap_or(0.0))),
+        ("POSITION UNITS", "m".into()),
+        ("NOMINAL FREQUENCY", number(about.centre_frequency.map_or(0.0, |f| 1e-6 * f.si()))),
+        ("ANTENNA SEPARATION", number(about.antenna_separation.map_or(0.0, Metres::si))),
+        ("PULSER VOLTAGE (V)", "0".into()),
+        ("NUMBER OF STACKS", "1".into()),
+        ("SURVEY MODE", "Reflection".into()),
+    ];
+    // Other readers look for dates in both lines; that of the survey is not known. Lines end as the instrument ends them.
+    let start = format!(
+        "1234\r\r\n01/01/2000 written by ballast-gpr, amplitude of one count {amplitude:e} \r\r\n2000-01-01 \r\r\n"
+    );
+    let header = lines.iter().fold(start, |text, (key, value)| text + &format!("{key:<18} = {value} \r\r\n"));
     let mut bytes = Vec::with_capacity(count * (dt1::TRACE_HEADER + 2 * points));
     for (index, samples) in counts.chunks_exact(points).enumerate() {
         let mut words = [0f32; 8];

@@ -219,7 +219,7 @@ pub fn bytes(original: &[u8], random: &mut Pcg64) -> Vec<u8> {
                 bytes.splice(place..(place + piece.len()).min(bytes.len()), piece);
             }
             20..22 => bytes.iter_mut().skip(place).take(random.random_range(1..64)).for_each(|byte| *byte = 0),
-            22 => drop(bytes.drain(place..(place + random.random_range(1..32)).min(original.len().min(bytes.len())))),
+            22 => drop(bytes.drain(place..(place + random.random_range(1..32)).min(bytes.len()))),
             _ => bytes[place] = bytes[place].wrapping_add(random.random_range(0..5)).wrapping_sub(2),
         }
     }

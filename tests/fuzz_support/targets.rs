@@ -10,6 +10,7 @@ use ballast_gpr::compare::text::{Column, TextOptions, read_trace};
 use ballast_gpr::fdtd::Fdtd;
 use ballast_gpr::gprmax::hdf5::H5File;
 use ballast_gpr::gprmax::{COMMANDS, read_input, read_traces};
+use ballast_gpr::measured;
 use ballast_gpr::model::{Model, TimeWindow};
 use ballast_gpr::packing::Grading;
 use ballast_gpr::packing::export::{OVERLAP_TOLERANCE, from_csv, from_json};
@@ -41,10 +42,17 @@ pub enum Target {
     TraceText,
     /// Scenes as TOML.
     Scene,
+    /// Files of instruments; those of two files as one input, with the length of the header before it.
+    Dzt,
+    Dt1,
+    Mala,
+    SegY,
+    Iprb,
+    Ids,
 }
 
 impl Target {
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 15] = [
         Self::In,
         Self::Traces,
         Self::Voxels,
@@ -54,6 +62,12 @@ impl Target {
         Self::Grading,
         Self::TraceText,
         Self::Scene,
+        Self::Dzt,
+        Self::Dt1,
+        Self::Mala,
+        Self::SegY,
+        Self::Iprb,
+        Self::Ids,
     ];
 
     /// Its name, which is also that of its folder of seeds.
@@ -68,6 +82,12 @@ impl Target {
             Self::Grading => "grading",
             Self::TraceText => "trace_text",
             Self::Scene => "scene",
+            Self::Dzt => "dzt",
+            Self::Dt1 => "dt1",
+            Self::Mala => "mala",
+            Self::SegY => "segy",
+            Self::Iprb => "iprb",
+            Self::Ids => "ids",
         }
     }
 
@@ -97,7 +117,24 @@ impl Target {
     pub fn seeds(self) -> Vec<Vec<u8>> {
         let found = files(self.name());
         assert!(!found.is_empty(), "{}", self.name());
-        found.into_iter().map(|(_, bytes)| bytes).collect()
+        let Some((header, _)) = self.pair() else { return found.into_iter().map(|(_, bytes)| bytes).collect() };
+        let header_of = |name: &str| fs::read(Path::new(name).with_extension(header)).unwrap();
+        let is_header = |name: &str| Path::new(name).extension().is_some_and(|ending| ending == header);
+        found
+            .into_iter()
+            .filter(|(name, _)| !is_header(name))
+            .map(|(name, data)| joined(&header_of(&name), &data))
+            .collect()
+    }
+
+    /// Endings of the header and of the samples, of formats with two files.
+    fn pair(self) -> Option<(&'static str, &'static str)> {
+        match self {
+            Self::Dt1 => Some(("hd", "dt1")),
+            Self::Mala => Some(("rad", "rd3")),
+            Self::Iprb => Some(("iprh", "iprb")),
+            _ => None,
+        }
     }
 
     /// What once was not survived, with the names of the files.
@@ -119,7 +156,20 @@ impl Target {
     pub fn mutate(self, seeds: &[Vec<u8>], random: &mut Pcg64) -> Vec<u8> {
         let (seed, other) = (&seeds[random.random_range(0..seeds.len())], &seeds[random.random_range(0..seeds.len())]);
         match self {
-            Self::Traces | Self::Voxels => mutate::bytes(seed, random),
+            Self::Traces | Self::Voxels | Self::Dzt | Self::Ids => mutate::bytes(seed, random),
+            // Half of the changes behind the 3200 bytes of text.
+            Self::SegY if seed.len() > 3200 && random.random_bool(0.5) => {
+                [&seed[..3200], &mutate::bytes(&seed[3200..], random)].concat()
+            }
+            Self::SegY => mutate::bytes(seed, random),
+            Self::Dt1 | Self::Mala | Self::Iprb => {
+                let ((header, data), (other, _)) = (parted(seed), parted(other));
+                if random.random_bool(0.5) {
+                    return joined(header, &mutate::bytes(data, random));
+                }
+                let line = |random: &mut Pcg64| format!("{} = {}", one(random, &WORDS_RADAR), number(random));
+                joined(&mutate::text(header, other, &WORDS_RADAR, &line, random), data)
+            }
             Self::In => mutate::text(seed, other, &WORDS_IN, &command, random),
             _ => mutate::text(
                 seed,
@@ -171,11 +221,33 @@ impl Target {
                 let plain = TextOptions::default();
                 read_trace(text, "fuzz", &plain).map_or_else(|error| said(&error), |_| true)
             }),
+            Self::Dzt => measured::read(&write("line.dzt")).map_or_else(|error| said(&error), |_| true),
+            Self::SegY => measured::read(&write("line.sgy")).map_or_else(|error| said(&error), |_| true),
+            Self::Ids => measured::read(&write("line.dt")).map_or_else(|error| said(&error), |_| true),
+            Self::Dt1 | Self::Mala | Self::Iprb => {
+                let Some((ending_of_header, ending)) = self.pair() else { return false };
+                let (header, data) = parted(input);
+                fs::write(folder.join(format!("line.{ending_of_header}")), header).unwrap();
+                let path = folder.join(format!("line.{ending}"));
+                fs::write(&path, data).unwrap();
+                measured::read(&path).map_or_else(|error| said(&error), |_| true)
+            }
             Self::Scene => text().is_some_and(|text| {
                 SceneSpec::from_toml(text, Path::new("fuzz.toml")).map_or_else(|error| said(&error), |_| true)
             }),
         }
     }
+}
+
+/// A header and samples in one, with the length of the header before.
+fn joined(header: &[u8], data: &[u8]) -> Vec<u8> {
+    [&(header.len() as u32).to_le_bytes()[..], header, data].concat()
+}
+
+/// The two again.
+fn parted(input: &[u8]) -> (&[u8], &[u8]) {
+    let Some((length, rest)) = input.split_first_chunk::<4>() else { return (&[], input) };
+    rest.split_at((u32::from_le_bytes(*length) as usize).min(rest.len()))
 }
 
 /// Name and content of the files in a folder of the corpus; none where it is missing.
@@ -241,6 +313,30 @@ const WORDS_IN: [&str; 46] = [
     "x0",
     "zmax",
     "snap.h5",
+];
+
+/// Keys and values of headers of instruments.
+const WORDS_RADAR: [&str; 20] = [
+    "SAMPLES",
+    "FREQUENCY",
+    "TIMEWINDOW",
+    "LAST TRACE",
+    "DISTANCE INTERVAL",
+    "ANTENNAS",
+    "COMMENT",
+    "DATA VERSION",
+    "ZERO LEVEL",
+    "16",
+    "32",
+    ":",
+    "NUMBER OF TRACES",
+    "NUMBER OF PTS/TRC",
+    "TIMEZERO AT POINT",
+    "TOTAL TIME WINDOW",
+    "POSITION UNITS",
+    "ft",
+    "m",
+    "NOMINAL FREQUENCY",
 ];
 
 /// Words of the other formats.
