@@ -67,7 +67,8 @@ macro_rules! exit_codes {
 exit_codes! {
     Input: crate::packing::PackingError, crate::raster::RasterError, crate::compare::CompareError,
         crate::compare::text::TextError, crate::model::CheckError, crate::model::PaintError, crate::units::UnitError;
-    Input: crate::gprmax::GeometryWriteError, crate::model::SnapshotError, crate::trace::BScanError;
+    Input: crate::gprmax::GeometryWriteError, crate::model::SnapshotError, crate::trace::BScanError,
+        crate::compare::process::ProcessError;
     Fault: serde_json::Error, crate::study::CaseError;
 }
 

@@ -24,6 +24,8 @@ mod manifest;
 mod map_figure;
 mod pack;
 mod pack_spheres;
+mod process;
+mod process_figure;
 mod progress;
 mod run;
 mod scene_args;
@@ -66,6 +68,7 @@ enum Command {
     Build(build::BuildArgs),
     Run(run::RunArgs),
     Compare(compare::CompareArgs),
+    Process(process::ProcessArgs),
     Explain(explain::ExplainArgs),
     Inspect(inspect::InspectArgs),
     Convert(convert::ConvertArgs),
@@ -90,6 +93,7 @@ pub fn main() -> ExitCode {
         Command::Build(args) => build::run(args),
         Command::Run(args) => run::run(args),
         Command::Compare(args) => compare::run(args),
+        Command::Process(args) => process::run(args),
         Command::Explain(args) => explain::run(args),
         Command::Inspect(args) => inspect::run(args),
         Command::Convert(args) => convert::run(args),

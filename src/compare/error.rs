@@ -1,7 +1,7 @@
 //! Why two traces cannot be compared.
 
 use super::picks::{Event, NoEcho};
-use crate::trace::{AScan, Component};
+use crate::trace::{AScan, BScanError, Component};
 use crate::units::Seconds;
 
 /// Why two traces cannot be compared.
@@ -149,6 +149,9 @@ pub enum CompareError {
         /// Its time step.
         step_b: Seconds,
     },
+    /// Traces that do not lie side by side.
+    #[error(transparent)]
+    Section(#[from] BScanError),
     /// Two runs that do not have the same receivers, or none.
     #[error("{a} receivers cannot be compared with {b}")]
     Receivers {
@@ -189,5 +192,5 @@ pub(super) fn check(trace: &AScan) -> Result<(), CompareError> {
 /// A time to print: to a tenth of a picosecond, so that 0.1 + 0.2 does not show its last bits.
 pub(super) fn rounded(time: f64) -> Seconds {
     let tenths = (time * 1e13).round();
-    if tenths.abs() < 1e15 { Seconds(tenths / 1e13) } else { Seconds(time) }
+    if tenths.abs() < 1e15 { Seconds(tenths / 1e13 + 0.0) } else { Seconds(time) }
 }

@@ -2,7 +2,8 @@
 //!
 //! [`compare`] takes two traces through the same named steps and returns the prepared traces, their envelopes and spectra,
 //! the picks, and the metrics in the order in which they matter: times of the surface and plate echo first. Each step is
-//! also a plain function on a trace. [`relative_l2`] is the number for "two solvers agree". [`text`] reads two-column files,
+//! also a plain function on a trace. [`relative_l2`] is the number for "two solvers agree". [`process`] holds the
+//! steps of the field. [`text`] reads two-column files,
 //! [`permittivity`] turns picks into permittivities.
 //!
 //! Differences are the second trace minus the first, so a positive time means that the second is later.
@@ -13,6 +14,7 @@ mod fields;
 mod metrics;
 pub mod permittivity;
 mod picks;
+pub mod process;
 mod resample;
 mod spectrum;
 mod steps;

@@ -11,12 +11,17 @@ use crate::units::{Hertz, Seconds};
 /// The trace and its mirror image go through the transform together: the cycle closes without a jump between the last and
 /// the first sample, which would ring into both ends. An empty trace gives an empty envelope.
 pub fn envelope(trace: &AScan) -> AScan {
-    let n = trace.samples.len();
-    let padded = trace.samples.iter().chain(trace.samples.iter().rev());
+    AScan { samples: envelope_of(&trace.samples), ..trace.clone() }
+}
+
+/// As [`envelope`], of samples.
+pub(super) fn envelope_of(samples: &[f64]) -> Vec<f64> {
+    let n = samples.len();
+    let padded = samples.iter().chain(samples.iter().rev());
     let mut buffer: Vec<Complex<f64>> = padded.map(|v| Complex::new(*v, 0.0)).collect();
     let total = buffer.len();
     if total == 0 {
-        return trace.clone();
+        return vec![];
     }
     let mut planner = FftPlanner::new();
     planner.plan_fft_forward(total).process(&mut buffer);
@@ -29,8 +34,7 @@ pub fn envelope(trace: &AScan) -> AScan {
         };
     }
     planner.plan_fft_inverse(total).process(&mut buffer);
-    let samples = buffer[..n].iter().map(|v| v.norm() / total as f64).collect();
-    AScan { samples, ..trace.clone() }
+    buffer[..n].iter().map(|v| v.norm() / total as f64).collect()
 }
 
 /// Amplitude spectrum of a trace, `|integral of x exp(-i omega t) dt|`.

@@ -2,9 +2,10 @@
 
 use super::error::{CompareError, rounded};
 use super::picks::Event;
+use super::process::{Running, Section};
 use super::resample::resample;
 use crate::trace::AScan;
-use crate::units::Seconds;
+use crate::units::{Hertz, Seconds};
 
 /// What was done to a trace.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -17,9 +18,59 @@ pub enum Step {
     },
     /// The mean was taken off.
     MeanRemoved {
-        /// That mean.
+        /// That mean; of several traces the mean of their means.
         mean: f64,
     },
+    /// A running mean or median was taken off.
+    Dewowed {
+        /// Length of the window.
+        window: Seconds,
+        /// The same in samples.
+        samples: usize,
+        /// What was taken in the window.
+        by: Running,
+    },
+    /// A Butterworth filter was run forwards and backwards.
+    Filtered {
+        /// Lower corner, if there is one.
+        from: Option<Hertz>,
+        /// Upper corner, if there is one.
+        to: Option<Hertz>,
+        /// Order of each of the two runs.
+        order: usize,
+    },
+    /// The mean over traces was taken off.
+    BackgroundRemoved {
+        /// Traces in each mean.
+        traces: usize,
+        /// Whether the mean moved along the traces.
+        moving: bool,
+    },
+    /// Means were put in the place of traces.
+    Stacked {
+        /// Traces there were.
+        traces: usize,
+        /// Traces that came out.
+        into: usize,
+        /// Which were left out, from 0.
+        dropped: Vec<usize>,
+    },
+    /// Samples were multiplied by `exp(rate t) t^power`.
+    GainByTime {
+        /// The rate, 1/ns.
+        rate_per_ns: f64,
+        /// The power.
+        power: f64,
+    },
+    /// Samples were divided by the level about them.
+    GainByLevel {
+        /// Length of the window.
+        window: Seconds,
+        /// The same in samples.
+        samples: usize,
+    },
+    /// Traces gave way to their envelopes.
+    EnvelopeTaken,
     /// The time axis was moved.
     TimeZeroSet {
         /// What happens at the new zero, for example `direct wave`.
@@ -57,6 +108,37 @@ impl std::fmt::Display for Step {
         match self {
             Self::Subtracted { reference } => write!(f, "`{reference}` subtracted"),
             Self::MeanRemoved { mean } => write!(f, "mean of {mean:.3e} removed"),
+            Self::Dewowed { window, samples, by } => {
+                write!(f, "running {by} over {} ({samples} samples) removed", rounded(window.si()))
+            }
+            Self::Filtered { from, to, order } => {
+                match (from, to) {
+                    (Some(from), Some(to)) => write!(f, "band-pass {from} to {to}")?,
+                    (Some(from), None) => write!(f, "high-pass {from}")?,
+                    (None, Some(to)) => write!(f, "low-pass {to}")?,
+                    (None, None) => f.write_str("no filter")?,
+                }
+                write!(f, ", Butterworth order {order} forwards and backwards")
+            }
+            Self::BackgroundRemoved { traces, moving: true } => write!(f, "moving mean of {traces} traces removed"),
+            Self::BackgroundRemoved { traces, moving: false } => write!(f, "mean of all {traces} traces removed"),
+            Self::Stacked { traces, into, dropped } => {
+                write!(f, "{traces} traces stacked into {into}, ")?;
+                match dropped.as_slice() {
+                    [] => f.write_str("none dropped"),
+                    [one] => write!(f, "trace {one} dropped (from 0)"),
+                    many if many.len() <= 8 => {
+                        let names: Vec<String> = many.iter().map(ToString::to_string).collect();
+                        write!(f, "traces {} dropped (from 0)", names.join(", "))
+                    }
+                    many => write!(f, "{} dropped", many.len()),
+                }
+            }
+            Self::GainByTime { rate_per_ns, power } => write!(f, "gain of exp({rate_per_ns} t/ns) (t/ns)^{power}"),
+            Self::GainByLevel { window, samples } => {
+                write!(f, "divided by the level over {} ({samples} samples)", rounded(window.si()))
+            }
+            Self::EnvelopeTaken => f.write_str("envelope taken"),
             Self::TimeZeroSet { by, shift } => write!(f, "time zero at the {by} (moved by {})", rounded(shift.si())),
             Self::Resampled { from, to } => {
                 write!(f, "resampled from {} to {}", rounded(from.si()), rounded(to.si()))
@@ -68,31 +150,36 @@ impl std::fmt::Display for Step {
     }
 }
 
-/// Takes off the mean of the samples.
-pub fn remove_dc(trace: &AScan) -> (AScan, Step) {
-    let mean = trace.samples.iter().sum::<f64>() / trace.samples.len().max(1) as f64;
-    let samples = trace.samples.iter().map(|v| v - mean).collect();
-    (AScan { samples, ..trace.clone() }, Step::MeanRemoved { mean })
+/// Takes off the mean of the samples, of each trace its own.
+pub fn remove_dc<T: Section>(section: &T) -> (T, Step) {
+    let mut means = 0.0;
+    let new = section.mapped(|trace| {
+        let mean = trace.iter().sum::<f64>() / trace.len().max(1) as f64;
+        means += mean;
+        trace.iter().map(|v| v - mean).collect()
+    });
+    (new, Step::MeanRemoved { mean: means / section.traces().max(1) as f64 })
 }
 
-/// Takes off another trace, for example one in free space, which leaves the trace without its direct wave.
+/// Takes another trace off each, for example one in free space, which leaves them without their direct wave.
 ///
-/// The reference is resampled onto the axis of the trace; beyond its ends it counts as zero.
-pub fn subtract_reference(trace: &AScan, reference: &AScan) -> (AScan, Step) {
-    let onto = resample(reference, trace.first_sample, trace.time_step, trace.samples.len());
+/// The reference is resampled onto the axis of the section; beyond its ends it counts as zero.
+pub fn subtract_reference<T: Section>(section: &T, reference: &AScan) -> (T, Step) {
+    let onto = resample(reference, section.first_sample(), section.time_step(), section.length());
     let last = reference.time(reference.samples.len().saturating_sub(1));
-    let slack = 1e-6 * trace.time_step.si();
+    let slack = 1e-6 * section.time_step().si();
     let covered = (reference.first_sample.si() - slack)..=(last + slack);
-    let pairs = trace.times().zip(&trace.samples).zip(&onto.samples);
-    let samples = pairs.map(|((t, v), r)| if covered.contains(&t) { v - r } else { *v }).collect();
-    (AScan { samples, ..trace.clone() }, Step::Subtracted { reference: reference.name.clone() })
+    let taken: Vec<f64> =
+        onto.times().zip(&onto.samples).map(|(t, r)| if covered.contains(&t) { *r } else { 0.0 }).collect();
+    let new = section.mapped(|trace| trace.iter().zip(&taken).map(|(v, r)| v - r).collect());
+    (new, Step::Subtracted { reference: reference.name.clone() })
 }
 
 /// Moves the time axis so that what happens at `event_time` happens at `becomes`.
-pub fn set_time_zero(trace: &AScan, event_time: Seconds, becomes: Seconds, by: &str) -> (AScan, Step) {
+pub fn set_time_zero<T: Section>(section: &T, event_time: Seconds, becomes: Seconds, by: &str) -> (T, Step) {
     let shift = Seconds(becomes.si() - event_time.si());
-    let first_sample = Seconds(trace.first_sample.si() + shift.si());
-    (AScan { first_sample, ..trace.clone() }, Step::TimeZeroSet { by: by.into(), shift })
+    let first_sample = Seconds(section.first_sample().si() + shift.si());
+    (section.moved(first_sample), Step::TimeZeroSet { by: by.into(), shift })
 }
 
 /// Resamples a trace over its own time window with another step, by [`resample`].
@@ -107,35 +194,35 @@ pub fn resample_to_step(trace: &AScan, time_step: Seconds) -> (AScan, Step) {
 ///
 /// # Errors
 /// Fewer than two samples inside.
-pub fn crop(trace: &AScan, from: Seconds, to: Seconds) -> Result<(AScan, Step), CompareError> {
-    let slack = 1e-6 * trace.time_step.si();
-    let inside = |k: &usize| (from.si() - slack..=to.si() + slack).contains(&trace.time(*k));
-    let indices: Vec<usize> = (0..trace.samples.len()).filter(inside).collect();
+pub fn crop<T: Section>(section: &T, from: Seconds, to: Seconds) -> Result<(T, Step), CompareError> {
+    let slack = 1e-6 * section.time_step().si();
+    let inside = |k: &usize| (from.si() - slack..=to.si() + slack).contains(&section.time_of(*k));
+    let indices: Vec<usize> = (0..section.length()).filter(inside).collect();
     let (Some(&start), Some(&end), 2..) = (indices.first(), indices.last(), indices.len()) else {
         return Err(CompareError::Window {
-            name: trace.name.clone(),
+            name: section.name().into(),
             from,
             to,
             samples: indices.len(),
-            first: rounded(trace.first_sample.si()),
-            last: rounded(trace.time(trace.samples.len().saturating_sub(1))),
+            first: rounded(section.first_sample().si()),
+            last: rounded(section.time_of(section.length().saturating_sub(1))),
             least: 2,
         });
     };
-    let samples = trace.samples[start..=end].to_vec();
-    let step = Step::Cropped { from: Seconds(trace.time(start)), to: Seconds(trace.time(end)) };
-    Ok((AScan { samples, first_sample: Seconds(trace.time(start)), ..trace.clone() }, step))
+    let (first, last) = (Seconds(section.time_of(start)), Seconds(section.time_of(end)));
+    let new = section.rebuilt(first, section.time_step(), |trace| trace[start..=end].to_vec())?;
+    Ok((new, Step::Cropped { from: first, to: last }))
 }
 
 /// Turns the sign of every sample.
-pub fn flip(trace: &AScan) -> (AScan, Step) {
-    (AScan { samples: trace.samples.iter().map(|v| -v).collect(), ..trace.clone() }, Step::Flipped)
+pub fn flip<T: Section>(section: &T) -> (T, Step) {
+    (section.mapped(|trace| trace.iter().map(|v| -v).collect()), Step::Flipped)
 }
 
 /// Divides every sample by `divisor`, which should not be zero.
-pub fn normalise(trace: &AScan, divisor: f64, by: &str) -> (AScan, Step) {
-    let samples = trace.samples.iter().map(|v| v / divisor).collect();
-    (AScan { samples, ..trace.clone() }, Step::Normalised { by: by.into(), divisor })
+pub fn normalise<T: Section>(section: &T, divisor: f64, by: &str) -> (T, Step) {
+    let new = section.mapped(|trace| trace.iter().map(|v| v / divisor).collect());
+    (new, Step::Normalised { by: by.into(), divisor })
 }
 
 /// Time of the first local extremum of at least a quarter of the largest amplitude, between samples by a parabola.

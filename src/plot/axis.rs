@@ -23,12 +23,21 @@ pub struct Axis {
     /// The labelled ticks, for example the sieves of a standard; empty to choose round numbers. Of labels that would
     /// touch, the first is written.
     pub ticks: Vec<f64>,
+    /// Whether a vertical axis grows downwards, as the time of a radargram does.
+    pub downwards: bool,
 }
 
 impl Axis {
     /// Makes a linear axis that spans its data.
     pub fn linear(label: &str, unit: &str) -> Self {
-        Self { label: label.into(), unit: unit.into(), scale: Scale::Linear, range: None, ticks: Vec::new() }
+        Self {
+            label: label.into(),
+            unit: unit.into(),
+            scale: Scale::Linear,
+            range: None,
+            ticks: Vec::new(),
+            downwards: false,
+        }
     }
 
     /// Makes a logarithmic axis that spans its data.
@@ -40,6 +49,13 @@ impl Axis {
     #[must_use]
     pub fn between(mut self, low: f64, high: f64) -> Self {
         self.range = Some((low, high));
+        self
+    }
+
+    /// The same axis growing downwards, if it is a vertical one.
+    #[must_use]
+    pub fn downwards(mut self) -> Self {
+        self.downwards = true;
         self
     }
 

@@ -4,6 +4,7 @@ use super::axis::Axis;
 use super::chart_layout::lay_out_chart;
 use super::error::PlotError;
 use super::figure::Figure;
+use super::pixels::Pixels;
 use super::sheet::{Rect, Sheet};
 
 /// How a series is drawn.
@@ -143,6 +144,8 @@ pub struct Chart {
     pub markers: Vec<Marker>,
     /// Lines with names.
     pub lines: Vec<ReferenceLine>,
+    /// Values drawn as pixels, below all else.
+    pub pixels: Option<Pixels>,
     /// Where the legend goes.
     pub legend: Legend,
     /// Width and height, points; the PNG has twice as many pixels.
@@ -160,6 +163,7 @@ impl Chart {
             bands: Vec::new(),
             markers: Vec::new(),
             lines: Vec::new(),
+            pixels: None,
             legend: Legend::Auto,
             size: [960.0, 600.0],
         }
@@ -173,6 +177,12 @@ impl Chart {
     }
 
     pub(super) fn check(&self) -> Result<(), PlotError> {
+        if let Some(Pixels { values, columns, rows, .. }) = &self.pixels
+            && columns.checked_mul(*rows) != Some(values.len())
+        {
+            let title = self.title.clone();
+            return Err(PlotError::MapShape { title, values: values.len(), nx: *columns, ny: *rows });
+        }
         match self.bands.iter().find(|band| band.lower.len() != band.x.len() || band.upper.len() != band.x.len()) {
             Some(Band { name, x, lower, upper, .. }) => {
                 Err(PlotError::BandShape { name: name.clone(), x: x.len(), lower: lower.len(), upper: upper.len() })

@@ -44,13 +44,20 @@ struct Plane {
     y: Span,
     x_ticks: Ticks,
     y_ticks: Ticks,
+    downwards: bool,
 }
 
 impl Plane {
     /// Where a point falls on the sheet, in the frame or out of it.
     fn place(&self, (x, y): (f64, f64)) -> Option<[f64; 2]> {
         let (u, v) = (self.x.share(x)?, self.y.share(y)?);
-        Some([self.frame.x + u * self.frame.width, self.frame.bottom() - v * self.frame.height])
+        Some([self.frame.x + u * self.frame.width, self.level(v)])
+    }
+
+    /// Where a share of the vertical axis lies on the sheet.
+    fn level(&self, share: f64) -> f64 {
+        let share = if self.downwards { 1.0 - share } else { share };
+        self.frame.bottom() - share * self.frame.height
     }
 }
 
@@ -67,11 +74,18 @@ fn left_of(chart: &Chart, ticks: &Ticks) -> f64 {
 }
 
 fn vertical_ticks(chart: &Chart, span: &Span, height: f64) -> Ticks {
-    if chart.y.ticks.is_empty() {
-        return choose(span, (height / 42.0).clamp(2.0, 10.0) as usize);
+    let mut ticks = if chart.y.ticks.is_empty() {
+        choose(span, (height / 42.0).clamp(2.0, 10.0) as usize)
+    } else {
+        let mut ticks = given(span, &chart.y.ticks);
+        keep_apart(&mut ticks, |a, b| (b.0 - a.0) * height >= TICK_SIZE + 2.0);
+        ticks
+    };
+    if chart.y.downwards {
+        for share in ticks.major.iter_mut().map(|(share, _)| share).chain(&mut ticks.minor) {
+            *share = 1.0 - *share;
+        }
     }
-    let mut ticks = given(span, &chart.y.ticks);
-    keep_apart(&mut ticks, |a, b| (b.0 - a.0) * height >= TICK_SIZE + 2.0);
     ticks
 }
 
@@ -101,12 +115,17 @@ fn keep_apart(ticks: &mut Ticks, apart: impl Fn(&(f64, String), &(f64, String)) 
 
 fn horizontal_span(chart: &Chart) -> Span {
     let lines = chart.series.iter().any(|s| !matches!(s.style, Stroke::Points | Stroke::LineAndPoints));
-    let margin = if lines || (chart.series.is_empty() && !chart.bands.is_empty()) { 0.0 } else { 0.04 };
+    let margin = if lines || chart.pixels.is_some() || (chart.series.is_empty() && !chart.bands.is_empty()) {
+        0.0
+    } else {
+        0.04
+    };
     let upright = chart.lines.iter().filter(|line| line.line == Line::Vertical).map(|line| line.at);
     let points =
         chart.series.iter().flat_map(|s| &s.points).filter(|p| p.1.is_finite() && p.0.is_finite()).map(|p| p.0);
     let bands = chart.bands.iter().flat_map(|band| band.x.iter().copied());
-    let values = points.chain(bands).chain(chart.markers.iter().map(|m| m.x)).chain(upright);
+    let edges = chart.pixels.iter().flat_map(|pixels| pixels.horizontal_edges());
+    let values = points.chain(bands).chain(chart.markers.iter().map(|m| m.x)).chain(upright).chain(edges);
     Span::of(&chart.x, values.filter(|v| v.is_finite()), margin)
 }
 
@@ -119,7 +138,9 @@ fn vertical_span(chart: &Chart, x: &Span) -> Span {
         rows.filter(|(at, _)| seen(**at)).flat_map(|(_, (low, high))| [*low, *high])
     });
     let markers = chart.markers.iter().filter(|m| seen(m.x)).map(|m| m.y);
-    Span::of(&chart.y, points.chain(bands).chain(markers).chain(level).filter(|v| v.is_finite()), 0.06)
+    let edges = chart.pixels.iter().flat_map(|pixels| pixels.vertical_edges());
+    let margin = if chart.pixels.is_some() { 0.0 } else { 0.06 };
+    Span::of(&chart.y, points.chain(bands).chain(markers).chain(level).chain(edges).filter(|v| v.is_finite()), margin)
 }
 
 /// Chooses as many horizontal ticks as fit beside one another.
@@ -156,7 +177,8 @@ fn plane(chart: &Chart, area: &Rect, top: f64, least_left: f64) -> Plane {
         right = right.max(needed.min(area.width * 0.3));
     }
     let width = (area.width - left - right).max(10.0);
-    Plane { frame: Rect::new(area.x + left, area.y + top, width, height), x, y, x_ticks, y_ticks }
+    let frame = Rect::new(area.x + left, area.y + top, width, height);
+    Plane { frame, x, y, x_ticks, y_ticks, downwards: chart.y.downwards }
 }
 
 /// Lays a chart out in an area of a sheet; the frame begins at least `least_left` from the left edge of the area.
@@ -191,6 +213,9 @@ pub(super) fn lay_out_chart(sheet: &mut Sheet, chart: &Chart, area: Rect, least_
         sheet.title([middle, area.y + BORDER + TITLE_SIZE], &chart.title, TITLE_SIZE, room);
     }
     draw_grid(sheet, &plan);
+    if let Some(pixels) = &chart.pixels {
+        sheet.picture(plan.frame, pixels.image(&plan.frame, [&plan.x, &plan.y], plan.downwards));
+    }
     for band in &chart.bands {
         draw_band(sheet, &plan, band);
     }
@@ -222,7 +247,7 @@ fn draw_grid(sheet: &mut Sheet, plan: &Plane) {
         sheet.line(vec![[frame.x, y], [frame.right(), y]], GRID_COLOUR, 0.75);
     }
     if plan.y.scale == Scale::Linear && plan.y.low < 0.0 && plan.y.high > 0.0 {
-        let y = frame.bottom() - plan.y.share(0.0).unwrap_or(0.0) * frame.height;
+        let y = plan.level(plan.y.share(0.0).unwrap_or(0.0));
         sheet.line(vec![[frame.x, y], [frame.right(), y]], ZERO_COLOUR, 0.75);
     }
 }
@@ -326,7 +351,7 @@ fn reference_position(plan: &Plane, at: f64, line: Line) -> Option<f64> {
     };
     (-1e-9..=1.0 + 1e-9).contains(&share).then(|| match line {
         Line::Vertical => frame.x + share * frame.width,
-        Line::Horizontal => frame.bottom() - share * frame.height,
+        Line::Horizontal => plan.level(share),
     })
 }
 
