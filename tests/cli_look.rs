@@ -65,13 +65,16 @@ fn many_traces_are_compared_with_one_and_drawn() {
     run(&place, "a", &[]);
     run(&place, "b", &["--fouling", "20cm"]);
     run(&place, "c", &["--seed", "2"]);
-    let many = ["compare", "b", "c", "--to", "a", "--json", "--out", "figures/seen-1.5"];
+    let many = ["compare", "b", "c", "--to", "a", "--each", "--json", "--out", "figures/seen-1.5"];
     let told = place.json(&many);
+    assert_eq!(told["ensemble"]["members"], 2);
+    let told = &told["members"];
     assert_eq!((&told[0]["a"], &told[0]["b"]), (&"a/fdtd.h5".into(), &"b/fdtd.h5".into()));
     assert_eq!(told[1]["b"], "c/fdtd.h5");
     let late = told[0]["metrics"]["plate_time_error"]["envelope"].as_str().unwrap();
     assert!(!late.starts_with('-'), "fines make the wave slower: {late}");
-    let names: Vec<_> = (1..=2).flat_map(|k| ["json", "png", "svg"].map(|e| format!("seen-1.5-{k}.{e}"))).collect();
+    let names: Vec<_> =
+        ["-1", "-2", ""].iter().flat_map(|k| ["json", "png", "svg"].map(|e| format!("seen-1.5{k}.{e}"))).collect();
     assert_eq!(place.names("figures"), names);
     assert!(fs::read(place.path("figures/seen-1.5-1.png")).unwrap().starts_with(b"\x89PNG"));
     assert!(place.read("figures/seen-1.5-2.svg").contains("<svg"));
@@ -80,7 +83,7 @@ fn many_traces_are_compared_with_one_and_drawn() {
 
     let before = place.files("figures");
     let error = place.fails(&many, 2);
-    assert!(error.starts_with("error: `figures/seen-1.5-1.png` exists already\n"), "{error}");
+    assert!(error.starts_with("error: `figures/seen-1.5.png` exists already\n"), "{error}");
     assert!(place.files("figures") == before);
     place.ok(&[&many[..], &["--force"]].concat());
 

@@ -9,7 +9,9 @@ use ballast_gpr::compare::process::{
     Band, Running, dewow, filter, gain_by_level, gain_by_time, remove_background, short_time_spectrum, stack,
     take_envelope,
 };
-use ballast_gpr::compare::{Step, remove_dc, spectrum};
+use ballast_gpr::compare::{
+    CompareOptions, Normalisation, Polarity, Step, compare, remove_dc, spectrum, structural_similarity, time_warp,
+};
 use ballast_gpr::trace::{BScan, Component};
 use ballast_gpr::units::{Hertz, Seconds};
 use rand::{RngExt as _, SeedableRng as _};
@@ -39,17 +41,20 @@ fn lines() -> BScan {
     BScan::new(samples, LENGTH, Seconds(TIME_STEP), Seconds(0.0), Component::Recorded, "lines".into()).unwrap()
 }
 
-fn by_scipy(lines: &BScan) -> Option<BTreeMap<String, Vec<Vec<f64>>>> {
+/// What a script of `tests/python` makes of a JSON value.
+fn by_python<T: serde::de::DeserializeOwned>(script: &str, given: &serde_json::Value) -> Option<T> {
     let python = common::gprmax()?.python;
     let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("lines.json");
-    let traces: Vec<&[f64]> = lines.traces().collect();
-    let text = serde_json::json!({ "time_step": TIME_STEP, "traces": traces }).to_string();
-    std::fs::write(&file, text).unwrap();
-    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/python/process_scipy.py");
+    let file = folder.path().join("given.json");
+    std::fs::write(&file, given.to_string()).unwrap();
+    let script = format!("{}/tests/python/{script}", env!("CARGO_MANIFEST_DIR"));
     let output = Command::new(python).arg(script).arg(&file).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     Some(serde_json::from_slice(&output.stdout).unwrap())
+}
+
+fn rows(section: &BScan) -> Vec<&[f64]> {
+    section.traces().collect()
 }
 
 /// Both compute in double precision what is the same number: 1e-9 of the largest leaves room for the rounding of recursive
@@ -57,7 +62,8 @@ fn by_scipy(lines: &BScan) -> Option<BTreeMap<String, Vec<Vec<f64>>>> {
 #[test]
 fn steps_give_what_scipy_gives() {
     let lines = lines();
-    let Some(wanted) = by_scipy(&lines) else { return };
+    let given = serde_json::json!({ "time_step": TIME_STEP, "traces": rows(&lines) });
+    let Some(wanted) = by_python::<BTreeMap<String, Vec<Vec<f64>>>>("process_scipy.py", &given) else { return };
     let mut ours: BTreeMap<String, Vec<f64>> = BTreeMap::new();
     let mut put = |name: &str, section: BScan| ours.insert(name.into(), section.samples().to_vec());
     put("mean", remove_dc(&lines).0);
@@ -94,5 +100,39 @@ fn steps_give_what_scipy_gives() {
         for (k, (found, wanted)) in found.iter().zip(&wanted).enumerate() {
             assert!((found - wanted).abs() < 1e-9 * largest, "{name}: {found} for {wanted} at {k}");
         }
+    }
+}
+
+/// The metrics of two traces and of two radargrams: every number written out again in NumPy (the time warping with the whole
+/// matrix; the structural similarity equal to that of scikit-image 0.26 where it is installed).
+#[test]
+fn metrics_give_what_numpy_gives() {
+    let a = remove_dc(&lines()).0;
+    let samples: Vec<f64> =
+        a.traces().flat_map(|trace| trace[8..].iter().chain(&trace[..8])).map(|v| 0.8 * v).collect();
+    let b = BScan::new(samples, LENGTH, a.time_step, a.first_sample, a.component, "later".into()).unwrap();
+    let given = serde_json::json!({ "a": rows(&a), "b": rows(&b), "band": 10 });
+    let Some(wanted) = by_python::<BTreeMap<String, f64>>("compare_numpy.py", &given) else { return };
+    let (first, second) = (a.trace(0).unwrap(), b.trace(0).unwrap());
+    let options = CompareOptions {
+        remove_dc: false,
+        normalisation: Normalisation::None,
+        polarity: Polarity::Keep,
+        ..CompareOptions::default()
+    };
+    let metrics = compare(&first, &second, &options).unwrap().metrics;
+    let lag = metrics.cross_correlation.lag.si() / TIME_STEP;
+    assert!((lag - wanted["lag in samples"]).abs() < 0.5, "{lag} for {}", wanted["lag in samples"]);
+    let warped = time_warp(&first, &second, Seconds(10.0 * TIME_STEP)).unwrap().unwrap();
+    for (name, found) in [
+        ("structural similarity", structural_similarity(&a, &b).unwrap()),
+        ("time warp", warped.distance),
+        ("correlation", metrics.zero_lag_correlation),
+        ("rmse", metrics.rmse),
+        ("relative l2", metrics.relative_l2),
+        ("envelope correlation", metrics.envelope_correlation),
+    ] {
+        let wanted = wanted[name];
+        assert!((found - wanted).abs() < 1e-9 * wanted.abs(), "{name}: {found} for {wanted}");
     }
 }

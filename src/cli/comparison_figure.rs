@@ -4,18 +4,20 @@ use crate::compare::{Comparison, Event, Picks, Spectrum};
 use crate::plot::{Axis, Chart, Marker, Panels, Series, Stroke};
 use crate::trace::AScan;
 
-/// Draws a comparison; the first trace solid, the second dashed.
-pub fn figure(title: &str, comparison: &Comparison) -> Panels {
+/// Draws a comparison; the first trace solid, the second dashed, or the other way round where the second is the measured
+/// one.
+pub fn figure(title: &str, comparison: &Comparison, second_solid: bool) -> Panels {
     let Comparison { a, b, .. } = comparison;
     let curve = |trace: &AScan| trace.times().zip(&trace.samples).map(|(t, v)| (1e9 * t, *v)).collect::<Vec<_>>();
     let time = || {
         let (first, last) = (a.time(0), a.time(a.samples.len().saturating_sub(1)));
         Axis::linear("time", "ns").between(1e9 * first, 1e9 * last)
     };
+    let strokes = if second_solid { [Stroke::Dashed, Stroke::Solid] } else { [Stroke::Solid, Stroke::Dashed] };
     let pair = |chart: Chart, first: Vec<(f64, f64)>, second: Vec<(f64, f64)>| {
         chart
-            .with(Series::line(&a.name, first).drawn(Stroke::Solid, 0))
-            .with(Series::line(&b.name, second).drawn(Stroke::Dashed, 1))
+            .with(Series::line(&a.name, first).drawn(strokes[0], 0))
+            .with(Series::line(&b.name, second).drawn(strokes[1], 1))
     };
     let mut traces = pair(Chart::new("A-scans", time(), Axis::linear("amplitude", "")), curve(a), curve(b));
     for (picks, letter, colour) in [(&comparison.picks_a, "", 0), (&comparison.picks_b, "′", 1)] {
@@ -43,7 +45,8 @@ pub fn figure(title: &str, comparison: &Comparison) -> Panels {
     Panels::stacked(title, vec![traces, residual, envelopes, spectra])
 }
 
-fn markers(picks: &Picks, letter: &str, colour: usize) -> Vec<Marker> {
+/// The surface and plate echoes as points with names.
+pub fn markers(picks: &Picks, letter: &str, colour: usize) -> Vec<Marker> {
     [(Event::SurfaceEcho, "surface"), (Event::PlateEcho, "plate")]
         .into_iter()
         .filter_map(|(event, name)| {

@@ -195,8 +195,12 @@ fn write_comparison(
     let mut comparison = compare::compare(clean, fouled, &options)?;
     comparison.a.name = "clean".into();
     comparison.b.name = "20 cm of fouling".into();
-    comparison_figure::figure("Tank of Benedetto et al. 2018, simulated at 1 GHz, direct wave taken off", &comparison)
-        .write(folder, "demo")?;
+    comparison_figure::figure(
+        "Tank of Benedetto et al. 2018, simulated at 1 GHz, direct wave taken off",
+        &comparison,
+        false,
+    )
+    .write(folder, "demo")?;
     let mut text = serde_json::to_string_pretty(&comparison)?;
     text.push('\n');
     files::write_bytes(&folder.join("demo.json"), text.as_bytes())?;

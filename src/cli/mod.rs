@@ -12,6 +12,7 @@ mod convert;
 mod cost;
 mod cost_choice;
 mod demo;
+mod ensemble_figure;
 mod error;
 mod experiment;
 mod explain;

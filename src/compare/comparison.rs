@@ -3,10 +3,13 @@
 use super::error::{CompareError, check, rounded};
 use super::metrics::{self, Metrics, TimeError};
 use super::picks::{Event, ExpectedEchoes, Picks, pick_echoes};
+use super::plate::PlateEcho;
+use super::process::{Flaw, flaws_of};
 use super::resample::resample;
 use super::spectrum::{Spectrum, envelope, spectrum};
 use super::steps::{self, Step};
-use crate::trace::AScan;
+use super::warp::time_warp;
+use crate::trace::{AScan, Component};
 use crate::units::constants::C0;
 use crate::units::{Metres, Seconds};
 
@@ -33,6 +36,12 @@ pub enum TimeZero {
         /// Height of the antenna over the plate.
         height: Metres,
     },
+    /// The same by the measurements of a plate ([`CompareOptions::plate_a`], [`CompareOptions::plate_b`]); a trace without one
+    /// keeps its times.
+    PlateMeasured {
+        /// Height of the antenna over the plate.
+        height: Metres,
+    },
 }
 
 /// By what the amplitudes are divided.
@@ -48,6 +57,9 @@ pub enum Normalisation {
     DirectWave,
     /// The size of the plate echo.
     PlateEcho,
+    /// The size of the echo of a plate measured by itself ([`CompareOptions::plate_a`], [`CompareOptions::plate_b`]), so that
+    /// amplitudes are reflections. A trace without one is fitted to the other by least squares at the best lag.
+    PlateMeasured,
 }
 
 /// What happens to the sign of the second trace.
@@ -70,6 +82,10 @@ pub struct CompareOptions {
     pub reference_a: Option<AScan>,
     /// Taken off the second trace before anything else.
     pub reference_b: Option<AScan>,
+    /// Echo of a plate under the antenna of the first trace.
+    pub plate_a: Option<PlateEcho>,
+    /// Echo of a plate under the antenna of the second trace.
+    pub plate_b: Option<PlateEcho>,
     /// Whether the mean of each trace is taken off.
     pub remove_dc: bool,
     /// What is put at a known time.
@@ -94,6 +110,8 @@ impl Default for CompareOptions {
         Self {
             reference_a: None,
             reference_b: None,
+            plate_a: None,
+            plate_b: None,
             remove_dc: true,
             time_zero: TimeZero::default(),
             time_step: None,
@@ -135,8 +153,12 @@ pub struct Comparison {
     pub spectrum_a: Spectrum,
     /// Spectrum of the second.
     pub spectrum_b: Spectrum,
+    /// What was wrong with recorded traces and stays so.
+    pub flaws: Vec<Flaw>,
 }
 
+/// How early or late a sample may come in dynamic time warping.
+const WARPING_BAND: Seconds = Seconds(0.5e-9);
 /// Fewest samples that two traces must share.
 const LEAST_SAMPLES: usize = 8;
 /// Most samples on the common axis.
@@ -175,8 +197,11 @@ pub fn compare(a: &AScan, b: &AScan, options: &CompareOptions) -> Result<Compari
         TimeZero::Given { a, b } => Some(of(a, b)),
         _ => None,
     };
-    let mut a = Prepared::new(a, options, options.reference_a.as_ref(), given(|a, _| a))?;
-    let mut b = Prepared::new(b, options, options.reference_b.as_ref(), given(|_, b| b))?;
+    let recorded = [a, b].into_iter().filter(|trace| trace.component == Component::Recorded);
+    let flaws = recorded.flat_map(flaws_of).collect();
+    let [plate_a, plate_b] = [options.plate_a.as_ref(), options.plate_b.as_ref()];
+    let mut a = Prepared::new(a, options, options.reference_a.as_ref(), plate_a, given(|a, _| a))?;
+    let mut b = Prepared::new(b, options, options.reference_b.as_ref(), plate_b, given(|_, b| b))?;
     onto_common_axis(&mut a, &mut b, options.time_step)?;
     if let Some((from, to)) = options.window {
         for prepared in [&mut a, &mut b] {
@@ -197,12 +222,56 @@ pub fn compare(a: &AScan, b: &AScan, options: &CompareOptions) -> Result<Compari
     if flip {
         b.apply(steps::flip);
     }
-    a.normalise(options.normalisation)?;
-    b.normalise(options.normalisation)?;
-    finish(a, b, max_lag)
+    if options.normalisation == Normalisation::PlateMeasured {
+        by_plates(&mut a, &mut b, [plate_a, plate_b], max_lag)?;
+    } else {
+        a.normalise(options.normalisation)?;
+        b.normalise(options.normalisation)?;
+    }
+    finish(a, b, flaws, max_lag)
 }
 
-fn finish(a: Prepared, b: Prepared, max_lag: Seconds) -> Result<Comparison, CompareError> {
+/// Divides each trace by the echo of its plate; the one without is fitted to the other.
+fn by_plates(
+    a: &mut Prepared,
+    b: &mut Prepared,
+    plates: [Option<&PlateEcho>; 2],
+    max_lag: Seconds,
+) -> Result<(), CompareError> {
+    let divide = |side: &mut Prepared, plate: &PlateEcho| {
+        let by = format!("plate echo of `{}`", plate.name);
+        side.apply(|trace| steps::normalise(trace, plate.amplitude, &by));
+    };
+    let fit = |side: &mut Prepared, other: &Prepared| -> Result<(), CompareError> {
+        let best = metrics::cross_correlation(&other.trace, &side.trace, max_lag)?.maximum.abs();
+        let divisor = metrics::norm(&side.trace.samples) / (best * metrics::norm(&other.trace.samples));
+        let by = format!("least-squares fit to `{}` at the best lag", other.trace.name);
+        if divisor.is_finite() && divisor > 0.0 {
+            side.apply(|trace| steps::normalise(trace, divisor, &by));
+        }
+        Ok(())
+    };
+    match plates {
+        [None, None] => {
+            return Err(CompareError::NoPlate { a: a.trace.name.clone(), b: b.trace.name.clone() });
+        }
+        [Some(first), Some(second)] => {
+            divide(a, first);
+            divide(b, second);
+        }
+        [Some(first), None] => {
+            divide(a, first);
+            fit(b, a)?;
+        }
+        [None, Some(second)] => {
+            divide(b, second);
+            fit(a, b)?;
+        }
+    }
+    Ok(())
+}
+
+fn finish(a: Prepared, b: Prepared, flaws: Vec<Flaw>, max_lag: Seconds) -> Result<Comparison, CompareError> {
     let (picks_a, picks_b) = (a.picks(), b.picks());
     let (envelope_a, envelope_b) = (envelope(&a.trace), envelope(&b.trace));
     let (spectrum_a, spectrum_b) = (spectrum(&a.trace), spectrum(&b.trace));
@@ -214,6 +283,7 @@ fn finish(a: Prepared, b: Prepared, max_lag: Seconds) -> Result<Comparison, Comp
         zero_lag_correlation: metrics::correlation(&a.trace, &b.trace)?,
         rmse: metrics::rmse(&a.trace, &b.trace)?,
         relative_l2: metrics::relative_l2(&a.trace, &b.trace)?,
+        time_warp: time_warp(&a.trace, &b.trace, WARPING_BAND)?,
         envelope_correlation: metrics::pearson(&envelope_a.samples, &envelope_b.samples),
         spectral_correlation: metrics::spectral_correlation(&spectrum_a, &spectrum_b),
         peak_frequency_shift: crate::units::Hertz(shift),
@@ -230,6 +300,7 @@ fn finish(a: Prepared, b: Prepared, max_lag: Seconds) -> Result<Comparison, Comp
         envelope_b,
         spectrum_a,
         spectrum_b,
+        flaws,
     })
 }
 
@@ -245,6 +316,7 @@ impl Prepared {
         trace: &AScan,
         options: &CompareOptions,
         reference: Option<&AScan>,
+        plate: Option<&PlateEcho>,
         given: Option<Seconds>,
     ) -> Result<Self, CompareError> {
         let mut prepared = Self { trace: trace.clone(), steps: vec![], expected: options.expected };
@@ -269,6 +341,13 @@ impl Prepared {
                 prepared.apply(|trace| steps::set_time_zero(trace, time, zero, "first peak"));
             }
             (TimeZero::DirectWave, None) => prepared.zero_at(Event::DirectWave, zero)?,
+            (TimeZero::PlateMeasured { height }, None) => {
+                if let Some(plate) = plate {
+                    let becomes = Seconds(2.0 * height.si() / C0);
+                    let by = format!("plate echo of `{}`", plate.name);
+                    prepared.apply(|trace| steps::set_time_zero(trace, plate.time, becomes, &by));
+                }
+            }
             (TimeZero::PlateEcho { height }, None) => {
                 prepared.zero_at(Event::PlateEcho, Seconds(2.0 * height.si() / C0))?;
             }
@@ -309,7 +388,7 @@ impl Prepared {
         let amplitude =
             |event| wanted(&self.trace, &self.picks(), event, "normalise by").map(|echo| echo.waveform.amplitude.abs());
         let (divisor, name) = match by {
-            Normalisation::None => return Ok(()),
+            Normalisation::None | Normalisation::PlateMeasured => return Ok(()),
             Normalisation::Maximum => (self.trace.peak(), "largest amplitude"),
             Normalisation::DirectWave => (amplitude(Event::DirectWave)?, "direct wave"),
             Normalisation::PlateEcho => (amplitude(Event::PlateEcho)?, "plate echo"),

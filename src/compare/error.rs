@@ -149,6 +149,50 @@ pub enum CompareError {
         /// Its time step.
         step_b: Seconds,
     },
+    /// A plate to normalise by that neither trace has.
+    #[error(
+        "neither `{a}` nor `{b}` has a measurement of a plate to normalise by\n\nhint: name one with `--plate FILE`"
+    )]
+    NoPlate {
+        /// Name of the first trace.
+        a: String,
+        /// Name of the second trace.
+        b: String,
+    },
+    /// Radargrams of other shapes, or too small ones.
+    #[error(
+        "`{a}` ({traces_a} traces of {samples_a} samples) and `{b}` ({traces_b} of {samples_b}) have no structural similarity: both need the same shape and at least {least} of each"
+    )]
+    Shapes {
+        /// Name of the first radargram.
+        a: String,
+        /// Its traces.
+        traces_a: usize,
+        /// Its samples.
+        samples_a: usize,
+        /// Name of the second radargram.
+        b: String,
+        /// Its traces.
+        traces_b: usize,
+        /// Its samples.
+        samples_b: usize,
+        /// Fewest traces and samples.
+        least: usize,
+    },
+    /// Too few simulations for a band.
+    #[error("{members} simulations make no ensemble: at least 2 are needed")]
+    FewMembers {
+        /// How many there are.
+        members: usize,
+    },
+    /// Simulations without a time that all of them cover.
+    #[error(
+        "the {members} simulations cover no time in common\n\nhint: give a part that all cover, for example `--window 2ns..15ns`"
+    )]
+    NoCommonTime {
+        /// How many there are.
+        members: usize,
+    },
     /// Traces that do not lie side by side.
     #[error(transparent)]
     Section(#[from] BScanError),

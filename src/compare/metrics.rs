@@ -6,6 +6,7 @@ use rustfft::num_complex::Complex;
 use super::error::CompareError;
 use super::picks::EchoPick;
 use super::spectrum::{Spectrum, vertex};
+use super::warp::TimeWarp;
 use crate::trace::AScan;
 use crate::units::{Hertz, Seconds};
 
@@ -52,12 +53,37 @@ pub struct Metrics {
     pub rmse: f64,
     /// `||b - a|| / ||a||`, after normalisation.
     pub relative_l2: f64,
+    /// Difference that is left when each sample may come up to half a nanosecond early or late; none where the traces have
+    /// too many samples for it.
+    pub time_warp: Option<TimeWarp>,
     /// Correlation of the envelopes about their means.
     pub envelope_correlation: f64,
     /// Correlation of the amplitude spectra about their means, up to where both have fallen below 1 % of their peaks.
     pub spectral_correlation: f64,
     /// Peak frequency of the second spectrum minus that of the first.
     pub peak_frequency_shift: Hertz,
+}
+
+impl Metrics {
+    /// Each number with its name and unit, in their order; none where it could not be had.
+    pub fn named(&self) -> Vec<(&'static str, Option<f64>)> {
+        let ns = |time: Option<Seconds>| time.map(|time| 1e9 * time.si());
+        vec![
+            ("surface echo, waveform, ns", ns(self.surface_time_error.waveform)),
+            ("surface echo, envelope, ns", ns(self.surface_time_error.envelope)),
+            ("plate echo, waveform, ns", ns(self.plate_time_error.waveform)),
+            ("plate echo, envelope, ns", ns(self.plate_time_error.envelope)),
+            ("largest cross-correlation", Some(self.cross_correlation.maximum)),
+            ("its lag, ns", ns(Some(self.cross_correlation.lag))),
+            ("correlation without lag", Some(self.zero_lag_correlation)),
+            ("RMSE after normalisation", Some(self.rmse)),
+            ("relative L2 difference", Some(self.relative_l2)),
+            ("difference after time warping", self.time_warp.map(|warp| warp.distance)),
+            ("correlation of envelopes", Some(self.envelope_correlation)),
+            ("correlation of spectra", Some(self.spectral_correlation)),
+            ("shift of the spectral peak, MHz", Some(1e-6 * self.peak_frequency_shift.si())),
+        ]
+    }
 }
 
 /// Computes the normalised cross-correlation, `sum a(t) b(t + lag) / (||a|| ||b||)`, of largest size within `max_lag`.
