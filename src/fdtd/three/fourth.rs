@@ -113,7 +113,7 @@ pub fn refusal(model: &Model, setup: &Setup3<'_>) -> Option<&'static str> {
     [
         (model.invariant_axis().is_some(), "a section that is not solved as a plane"),
         (setup.magnetic(), "a magnetic medium"),
-        (setup.edges.iter().any(|edge| edge.memories() > 0), "a medium that relaxes or resonates"),
+        (setup.remembers(), "a medium that relaxes or resonates"),
         (setup.slabs.iter().any(Slab::is_second_order), "an absorbing boundary of second order"),
         (!model.snapshots.is_empty(), "a snapshot"),
     ]

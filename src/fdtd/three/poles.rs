@@ -49,7 +49,7 @@ impl<T: Real> Dispersion<T> {
     /// Finds the runs of dispersive edges of plane `i`; `None` where there are none. Walls are left out.
     pub fn new(setup: &Setup3<'_>, i: usize) -> Option<Self> {
         let [_, ny, nz] = setup.painted.cells;
-        if setup.edges.iter().all(|edge| edge.memories() == 0) {
+        if !setup.remembers() {
             return None;
         }
         let (mut runs, mut of_row, mut place): (Vec<Run>, Vec<u32>, usize) = (vec![], vec![0], 0);

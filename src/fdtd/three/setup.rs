@@ -22,6 +22,7 @@ pub const OTHERS: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
 pub struct Setup3<'a> {
     pub painted: Cow<'a, Painted3>,
     pub edges: Vec<Edge>,
+    kinds: Kinds,
     /// `da`, `db` of each entry of the face palette.
     pub faces: Vec<[f64; 2]>,
     /// At x0, y0, z0, xmax, ymax, zmax.
@@ -66,6 +67,15 @@ impl Active {
     }
 }
 
+/// What kinds of edges there are.
+#[derive(Debug, Clone, Copy)]
+struct Kinds {
+    /// Some conduct.
+    lossy: bool,
+    /// Some relax or resonate.
+    remember: bool,
+}
+
 impl<'a> Setup3<'a> {
     /// Checks a model and settles its numbers.
     ///
@@ -86,6 +96,8 @@ impl<'a> Setup3<'a> {
             [(storage - loss) / (storage + loss), MU_0 / dt / (storage + loss)]
         };
         let faces: Vec<[f64; 2]> = painted.face_palette.iter().map(face).collect();
+        // Asked for every row; true shapes make a palette of a million entries.
+        let kinds = Kinds { lossy: edges.iter().any(Edge::is_lossy), remember: edges.iter().any(|e| e.memories() > 0) };
         let edge = |axis, place| &edges[entry(&painted, &loads, axis, place)];
         let db = |axis: usize, place| {
             if faces.is_empty() { 1.0 } else { faces[painted.faces[axis].get(place) as usize][1] }
@@ -106,6 +118,7 @@ impl<'a> Setup3<'a> {
             slabs: slabs(model, &painted)?,
             painted,
             edges,
+            kinds,
             order: model.order,
             iterations: model.iterations(),
             dt,
@@ -148,7 +161,12 @@ impl<'a> Setup3<'a> {
 
     /// Whether any edge conducts.
     pub fn lossy(&self) -> bool {
-        self.edges.iter().any(Edge::is_lossy)
+        self.kinds.lossy
+    }
+
+    /// Whether any edge relaxes or resonates.
+    pub fn remembers(&self) -> bool {
+        self.kinds.remember
     }
 
     /// Whether anything is magnetic.
