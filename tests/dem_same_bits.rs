@@ -6,6 +6,7 @@ use std::fs;
 
 use ballast_gpr::geometry::triangle_mesh::{open_box, rectangle};
 use ballast_gpr::packing::dem::{DemError, Motion, Rolling, Setup, Simulation, Stuff, TimeStep, Wall};
+use ballast_gpr::units::Seconds;
 use dem_support::{Numbers, ONE, bits, loose_heap, sphere, threads};
 
 /// 300 stones that fall into a box of triangles, two materials, a plate that lifts and turns and one that floats; larger
@@ -43,6 +44,8 @@ fn threads_and_calls_change_no_bit() {
         assert!(one.contacts().len() > 10 && one.wall_contacts().len() > 10);
         for count in [2, 4] {
             let mut other = busy(rolling);
+            // Every thread that is allowed, however little there is to do.
+            other.set_least_work(Seconds(0.0));
             for steps in [1, 999, 6500, 500] {
                 other.run_quietly(steps, threads(count)).unwrap();
             }

@@ -56,6 +56,7 @@ fn main() {
     if !said("peers") {
         against_number(&tile, share);
         against_stiffness(&tile, share);
+        against_time_step(&tile, share);
     }
 }
 
@@ -124,5 +125,28 @@ fn against_stiffness(tile: &[Grain], share: u64) {
         let step = simulation.step_length().seconds;
         let second = simulation.count() as f64 / (rate * step);
         println!("| {:.1} | {:.2} | {rate:.3e} | {second:.0} |", 1e-9 * young, 1e6 * step);
+    }
+}
+
+/// What a second of a bed costs with shares of the Rayleigh time, E 17.7 GPa. The work of a step hardly depends on it, so that the
+/// time goes as the inverse.
+fn against_time_step(tile: &[Grain], share: u64) {
+    println!(
+        "\n| share of the Rayleigh time | time step µs | particle-steps/s on 2 threads | wall time of 1 s of 5000 stones, s | exponent |"
+    );
+    println!("|---|---|---|---|---|");
+    let mut before: Option<(f64, f64)> = None;
+    for part in [0.05, 0.1, 0.2, 0.4] {
+        let mut setup = bed(tile, [1, 1]);
+        setup.time_step = TimeStep::ShareOfRayleigh(part);
+        let mut simulation = must(Simulation::new(setup));
+        rate(&mut simulation, 200, 2);
+        let rate = median((0..3).map(|_| rate(&mut simulation, 2000 / share, 2)).collect());
+        let step = simulation.step_length().seconds;
+        let second = simulation.count() as f64 / (rate * step);
+        let exponent = before
+            .map_or("–".to_string(), |(then, took)| format!("{:.2}", (second / took).ln() / (step / then).ln()));
+        println!("| {part} | {:.2} | {rate:.3e} | {second:.0} | {exponent} |", 1e6 * step);
+        before = Some((step, second));
     }
 }

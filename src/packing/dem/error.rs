@@ -62,7 +62,8 @@ pub enum DemError {
     },
     /// A time step beyond what is stable.
     #[error(
-        "the time step of {step} is beyond the limit of {limit} (Rayleigh time of grain {grain}, diameter {diameter})\n\nhint: take 20 % of it, {good}"
+        "the time step of {} is beyond the limit of {} (Rayleigh time of grain {grain}, diameter {:.1} mm)\n\nhint: take 20 % of it, {}",
+        readable(*step), readable(*limit), 1e3 * diameter.si(), readable(*good)
     )]
     TimeStepTooLong {
         /// What was asked for.
@@ -181,4 +182,38 @@ pub enum DemError {
     /// The system does not let us read or write a file.
     #[error("failed to {0}")]
     File(#[from] FileError),
+}
+
+/// A time with three digits in the unit that fits it, as it can be typed.
+fn readable(time: Seconds) -> String {
+    let seconds = time.si();
+    let (unit, scale) = match seconds {
+        _ if seconds >= 1.0 => ("s", 1.0),
+        _ if seconds >= 1e-3 => ("ms", 1e3),
+        _ if seconds >= 1e-6 => ("us", 1e6),
+        _ => ("ns", 1e9),
+    };
+    let value = scale * seconds;
+    let digits = if value < 10.0 { 2 } else { usize::from(value < 100.0) };
+    format!("{value:.digits$} {unit}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_time_has_three_digits_and_reads_back() {
+        for (seconds, said) in [
+            (5e-3, "5.00 ms"),
+            (46.907_138e-6, "46.9 us"),
+            (9.381_427e-6, "9.38 us"),
+            (123.4e-9, "123 ns"),
+            (2.0, "2.00 s"),
+        ] {
+            assert_eq!(readable(Seconds(seconds)), said);
+            let again: Seconds = said.parse().unwrap();
+            assert!((again.si() / seconds - 1.0).abs() < 5e-3);
+        }
+    }
 }

@@ -24,16 +24,21 @@ impl Grains {
     /// Takes checked grains in the order given.
     pub fn new(grains: &[Grain], stuffs: &[Stuff]) -> Self {
         let mut made = Self::default();
+        made.append(grains, stuffs, 0);
+        made
+    }
+
+    /// Takes further checked grains, numbered from `first`, behind the others.
+    pub fn append(&mut self, grains: &[Grain], stuffs: &[Stuff], first: usize) {
         for (id, grain) in grains.iter().enumerate() {
             let stuff = &stuffs[grain.material];
             let radius = grain.sphere.radius;
-            made.id.push(id as u32);
-            made.place.push(Four::new(grain.sphere.centre, radius));
-            made.velocity.push(Four::new(grain.velocity, stuff.density * grain.sphere.volume()));
-            made.spin.push(Four::new(grain.spin, stuff.rolling_friction * radius));
-            made.material.push(grain.material as u16);
+            self.id.push((first + id) as u32);
+            self.place.push(Four::new(grain.sphere.centre, radius));
+            self.velocity.push(Four::new(grain.velocity, stuff.density * grain.sphere.volume()));
+            self.spin.push(Four::new(grain.spin, stuff.rolling_friction * radius));
+            self.material.push(grain.material as u16);
         }
-        made
     }
 
     /// How many there are.

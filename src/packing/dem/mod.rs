@@ -33,6 +33,7 @@ mod cells;
 mod check;
 mod error;
 mod grains;
+mod insert;
 mod instructions;
 mod keeping;
 mod kernel;

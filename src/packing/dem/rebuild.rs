@@ -37,6 +37,12 @@ impl Simulation {
         self.make_list();
     }
 
+    /// Makes the list when grains have come in, whose sizes the skin has to fit.
+    pub(super) fn renew_list_for_all(&mut self) {
+        self.list.skin = self.fitting_skin(self.list.skin);
+        self.make_list();
+    }
+
     fn fitting_skin(&self, skin: f64) -> f64 {
         let [least, greatest] = self.radii;
         if !least.is_finite() {
@@ -145,14 +151,18 @@ impl Simulation {
         staying
     }
 
-    /// Refuses a start with overlaps that would shoot grains apart.
-    pub(super) fn check_overlaps(&self) -> Result<(), DemError> {
+    /// Refuses a start with overlaps that would shoot grains apart; of grains with numbers from `first` on.
+    pub(super) fn check_overlaps(&self, first: usize) -> Result<(), DemError> {
         let limit = self.limits.initial_overlap;
+        let is_new = |i: usize| self.grains.id[i] as usize >= first;
         let period = Period::new(self.periodic);
         for i in 0..self.grains.len() {
             let here = self.grains.place[i];
             for pair in self.pairs.starts[i] as usize..self.pairs.starts[i + 1] as usize {
                 let j = self.pairs.partner[pair] as usize;
+                if !is_new(i) && !is_new(j) {
+                    continue;
+                }
                 let there = self.grains.place[j];
                 let overlap = here.w() + there.w() - norm(period.nearest(sub(here.xyz(), there.xyz())));
                 let share = overlap / here.w().min(there.w());
@@ -170,6 +180,9 @@ impl Simulation {
         }
         for c in 0..self.walls.grain.len() {
             let (i, wall) = (self.walls.grain[c] as usize, self.walls.wall[c] as usize);
+            if !is_new(i) {
+                continue;
+            }
             let depth = self.walls.depth(c, &self.bodies, self.grains.place[i]);
             let share = depth / self.grains.place[i].w();
             if share.is_nan() || share > limit {

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::ExperimentError;
 use crate::files;
-use crate::packing::dem::{Setup, Simulation};
+use crate::packing::dem::{Grain, Setup, Simulation};
 
 /// What is told some ten times a second, and more often while steps are fast.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -117,6 +117,13 @@ impl<'a> Bench<'a> {
     /// Exchanges the simulation for one of another set-up, whose time begins at zero.
     pub fn rebuild(&mut self, setup: Setup) -> Result<(), ExperimentError> {
         self.simulation = Simulation::new(setup)?;
+        self.scale = scale(&self.simulation);
+        Ok(())
+    }
+
+    /// Puts further stones in; contacts keep what they remember.
+    pub fn insert(&mut self, grains: &[Grain]) -> Result<(), ExperimentError> {
+        self.simulation.insert(grains)?;
         self.scale = scale(&self.simulation);
         Ok(())
     }

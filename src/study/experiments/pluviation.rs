@@ -60,9 +60,9 @@ impl ExperimentSpec for PluviationSpec {
 }
 
 impl PluviationSpec {
-    /// The bed and a layer above it.
-    fn setup(&self, bed: Vec<Grain>, layer: usize) -> Setup {
-        let (width, lowest) = (self.width.si(), top(&bed) + self.drop.si());
+    /// A layer above a bed.
+    fn layer(&self, bed: &[Grain], layer: usize) -> Vec<Grain> {
+        let (width, lowest) = (self.width.si(), top(bed) + self.drop.si());
         let seed = self.run.seed.wrapping_mul(1_000_003).wrapping_add(layer as u64);
         let falling = strew(
             &self.sizes,
@@ -72,8 +72,13 @@ impl PluviationSpec {
             |_| true,
             |stones| stones.len() == self.stones_per_layer,
         );
-        let grains = bed.into_iter().chain(falling.into_iter().map(Grain::at_rest)).collect();
-        let mut setup = Setup::new(self.stone.stuff(), grains);
+        falling.into_iter().map(Grain::at_rest).collect()
+    }
+
+    /// The first layer over the floor.
+    fn setup(&self) -> Setup {
+        let width = self.width.si();
+        let mut setup = Setup::new(self.stone.stuff(), self.layer(&[], 0));
         setup.stuffs.push(Stuff { friction: self.side_friction, ..self.stone.stuff() });
         setup.walls = boxed([0.0, 0.0], [width, width]);
         setup.time_step = self.run.step();
@@ -92,15 +97,14 @@ fn top(bed: &[Grain]) -> f64 {
 /// When the simulation cannot be made or goes bad, or on request.
 pub fn run(spec: &PluviationSpec, running: &Running<'_>) -> Result<Outcome, ExperimentError> {
     spec.check()?;
-    let mut bench = Bench::open(NAME, spec, running, || Ok(spec.setup(vec![], 0)))?;
+    let mut bench = Bench::open(NAME, spec, running, || Ok(spec.setup()))?;
     while bench.journal.stage < spec.layers {
         bench.until_rest("raining", &spec.rest)?;
         let stones: Vec<Sphere> = bench.simulation.grains().iter().map(|grain| grain.sphere).collect();
-        let spent = bench.journal.rows.last().map_or(0.0, |row| row[1]) + bench.time();
         let layer = bench.journal.stage + 1;
         let row = vec![
             layer as f64,
-            spent,
+            bench.time(),
             stones.len() as f64,
             top(&bench.simulation.grains()),
             porosity(&stones, spec.width.si()),
@@ -108,8 +112,8 @@ pub fn run(spec: &PluviationSpec, running: &Running<'_>) -> Result<Outcome, Expe
         ];
         bench.journal.rows.push(row);
         if layer < spec.layers {
-            let bed = bench.simulation.grains();
-            bench.rebuild(spec.setup(bed, layer))?;
+            let falling = spec.layer(&bench.simulation.grains(), layer);
+            bench.insert(&falling)?;
         }
         bench.next_stage();
     }
@@ -140,9 +144,6 @@ fn read_off(spec: &PluviationSpec, bench: &Bench<'_>) -> Outcome {
     let mut notes = bench.notes();
     notes.extend(spec.stone.softened());
     notes.push("inside: from 15 % to 75 % of the heights of the centres".into());
-    if spec.layers > 1 {
-        notes.push("at each new layer the contacts of the bed begin anew without tangential force".into());
-    }
     let columns = ["layer", "time_s", "stones", "height_m", "porosity", "coordination"].map(String::from).to_vec();
     let stones = bench.simulation.grains().iter().map(|grain| grain.sphere).collect();
     Outcome {
