@@ -73,9 +73,18 @@ fn voids_of_bed(bed: &SphereBed, height: Metres) -> f64 {
     1.0 - bed.solid_share_between(Metres(0.0), height).si()
 }
 
+/// Void share of the middle below the antenna, half as wide and deep as the bed: there are no walls, which keep stones apart.
+fn voids_below_antenna(bed: &SphereBed, spec: &SceneSpec) -> f64 {
+    let [length, depth, _] = bed.size.map(Metres::si);
+    let at = spec.antenna.position.map_or(0.5 * length, Metres::si).clamp(0.25 * length, 0.75 * length);
+    let low = [at - 0.25 * length, 0.25 * depth, 0.0];
+    let high = [at + 0.25 * length, 0.75 * depth, spec.tank.height.si()];
+    1.0 - bed.solid_share_in(low, high).si()
+}
+
 /// Runs the bed of a scene in space, `sections` sections through it, as many packings of discs by random sequential adsorption
 /// with the bed's void share (seeds from the scene's on), the same with the equivalent stone, and the bed as a mixture without
-/// stones in both dimensions. Everything else of the scene is the same in all; the void share that the scene's mixture and echo
+/// stones in both dimensions, in space also with the voids of the middle below the antenna. Everything else of the scene is the same in all; the void share that the scene's mixture and echo
 /// windows are made from is the bed's.
 ///
 /// # Errors
@@ -103,6 +112,9 @@ pub fn compare_dimensions(
     let mut homogeneous = base.clone();
     homogeneous.packing.method = PackingMethod::Homogeneous;
     run.row("3-D, mixture", &space, &mut std::iter::once(scene::resolve(&in_space(&homogeneous))))?;
+    let mut inside = homogeneous.clone();
+    inside.packing.voids = Share(voids_below_antenna(bed, spec));
+    run.row("3-D, mixture as below", &space, &mut std::iter::once(scene::resolve(&in_space(&inside))))?;
     let depth = bed.size[1].si();
     let cut = |k: usize| {
         let mut spec = in_plane(&base);
@@ -161,7 +173,7 @@ impl Runs<'_> {
                 Err(error) => return Err(error.into()),
             };
             seconds.push(clock.elapsed().as_secs_f64());
-            voids.extend(voids_of(&scene));
+            voids.extend(voids_percent(&scene));
             let placement = crate::raster::Placement::of(&scene.spec);
             cells = placement.grid.cells.iter().product();
             if let Some(trace) = trace {
@@ -188,8 +200,8 @@ impl Runs<'_> {
     }
 }
 
-/// Void share of what a scene shows, up to its nominal height, %.
-fn voids_of(scene: &Scene) -> Option<f64> {
+/// Void share of what a scene shows, up to its nominal height over the whole width, %; none without stones.
+pub fn voids_percent(scene: &Scene) -> Option<f64> {
     let height = scene.spec.tank.height;
     let section = scene.packing.as_ref().map(|discs| 1.0 - discs.solid_share_between(Metres(0.0), height).si());
     section.or_else(|| scene.spheres.as_ref().map(|bed| voids_of_bed(bed, height))).map(|voids| 100.0 * voids)

@@ -70,7 +70,7 @@ pub struct PlateReference {
 }
 
 /// Electric trace of a model.
-fn solve(solver: &dyn Forward, model: &Model, on_progress: OnProgress<'_>) -> Result<AScan, EchoError> {
+pub(super) fn solve(solver: &dyn Forward, model: &Model, on_progress: OnProgress<'_>) -> Result<AScan, EchoError> {
     solver.solve(model, on_progress)?.radar_trace().cloned().ok_or(EchoError::NoTrace)
 }
 

@@ -2,6 +2,7 @@
 
 mod case;
 mod cost;
+mod cost_dem;
 mod cost_space;
 mod dimension;
 mod echoes;
@@ -13,7 +14,11 @@ pub use cost::{
     CostError, CostPoint, CostScene, CostSetting, CostSolver, CostSubject, CostTable, absorbing_cells, cost_curve,
     cost_of,
 };
+pub use cost_dem::{
+    DemCostError, DemCostPlan, DemCostRow, DemCostTable, DemKnob, DemSetting, Judged, PRESSED, settlement,
+    settling_cost,
+};
 pub use cost_space::CostBed;
-pub use dimension::{DimensionError, DimensionRow, DimensionTable, DimensionTrace, compare_dimensions};
+pub use dimension::{DimensionError, DimensionRow, DimensionTable, DimensionTrace, compare_dimensions, voids_percent};
 pub use echoes::{EchoError, EchoTime, Echoes, PlateReference, plate_reference, simulate_echoes};
 pub use statistics::{MeanAndSpread, fit_exponent};

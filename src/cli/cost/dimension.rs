@@ -47,6 +47,7 @@ pub(super) fn run(args: &CostArgs) -> Result<(), CliError> {
     report.print();
     println!("plate echo of a plane wave through the bed as a mixture: {:.3} ns", table.mixture_ns);
     println!("the echo's time is that of its envelope's peak: in space the pulse has two extrema of like size");
+    println!("mixture as below: with the voids of the middle below the antenna, away from walls");
     println!("± is the standard deviation of single runs; times are wall times of one run on this machine as it was");
     if let Some(settled) = &settled {
         for line in settle::told(settled) {
@@ -125,7 +126,15 @@ fn figure(table: &DimensionTable) -> Chart {
     let axes =
         (Axis::linear("time from the emission", "ns"), Axis::linear("echo over that of a plate at the surface", ""));
     let mut chart = Chart::new("One bed in space, in sections and as discs", axes.0, axes.1);
-    let strokes = [Stroke::Solid, Stroke::Dotted, Stroke::Solid, Stroke::Dashed, Stroke::Dashed, Stroke::Dotted];
+    let strokes = [
+        Stroke::Solid,
+        Stroke::Dotted,
+        Stroke::DashDotted,
+        Stroke::Solid,
+        Stroke::Dashed,
+        Stroke::Dashed,
+        Stroke::Dotted,
+    ];
     for (index, row) in table.rows.iter().enumerate() {
         let mean = mean_trace(table, row);
         let points: Vec<_> = mean.iter().map(|[time, value, _]| (*time, *value)).filter(|(t, _)| *t > 0.0).collect();
@@ -139,8 +148,8 @@ fn figure(table: &DimensionTable) -> Chart {
                 colour: 0,
             });
         }
-        let colour = [6, 7, 0, 1, 2, 5][index.min(5)];
-        chart = chart.with(Series::line(row.name, points).drawn(strokes[index.min(5)], colour));
+        let colour = [6, 7, 7, 0, 1, 2, 5][index.min(6)];
+        chart = chart.with(Series::line(row.name, points).drawn(strokes[index.min(6)], colour));
     }
     chart
 }

@@ -14,6 +14,8 @@ use crate::units::Metres;
 
 /// Packings per size; the median time and the mean error count.
 const REPEATS: u64 = 5;
+/// Most stones of the curve unless asked otherwise.
+const MOST: usize = 100_000;
 /// Fewest stones of the curve.
 const FEWEST: usize = 1000;
 /// Stones per metre of the tank's bed, 48 cm high (`validate benedetto2018`: 294 in 1.5 m).
@@ -30,7 +32,7 @@ struct Point {
 
 /// Packs ever wider tanks and shows time and error.
 pub(super) fn run(args: &CostArgs) -> Result<(), CliError> {
-    let mut sizes = vec![args.stones.max(FEWEST)];
+    let mut sizes = vec![args.stones.map_or(MOST, |stones| stones as usize).max(FEWEST)];
     while let Some(next) = sizes.last().map(|stones| stones / 3).filter(|stones| *stones >= FEWEST) {
         sizes.push(next);
     }
