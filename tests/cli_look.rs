@@ -133,6 +133,7 @@ fn a_packing_is_written_in_every_form() {
         "grading.csv",
         "grading.png",
         "grading.svg",
+        "manifest.json",
         "packing.csv",
         "packing.dxf",
         "packing.json",

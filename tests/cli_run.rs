@@ -218,3 +218,34 @@ fn geometry_files_of_a_b_scan_and_names_in_use() {
     let error = place.fails(&["run", "far.in"], 2);
     assert!(error.contains("but `nowhere` is not a folder"), "{error}");
 }
+
+/// `build --slices`: a folder for each section, the bed above them, and their voids side by side. Sections hold on average what the
+/// bed holds (Delesse); four of a small bed are within 6 percentage points of it.
+#[test]
+fn sections_through_a_bed_are_an_ensemble() {
+    let place = Place::new();
+    let scene =
+        "[tank]\nwidth = \"40 cm\"\ndepth = \"40 cm\"\nheight = \"30 cm\"\n[packing]\nmethod = \"random-addition\"\n";
+    fs::write(place.path("bed.toml"), scene).unwrap();
+    let told = place.json(&[&["build", "bed.toml", "--slices", "4", "--out", "s", "--json"], &COARSE[..]].concat());
+    let rows = told["rows"].as_array().unwrap();
+    let voids = |name: &str| rows.iter().find(|row| row["name"] == name).unwrap()["voids_percent"].as_f64().unwrap();
+    assert!((told["sections"]["mean"].as_f64().unwrap() - voids("bed")).abs() < 6.0, "{told}");
+    for (number, at) in [(1, 0.05), (2, 0.15), (3, 0.25), (4, 0.35)] {
+        let name = format!("slice-{number}");
+        let row = rows.iter().find(|row| row["name"] == *name).unwrap();
+        assert!((row["at_m"].as_f64().unwrap() - at).abs() < 1e-12);
+        assert!(place.path(&format!("s/{name}/model.in")).is_file());
+        let manifest: serde_json::Value =
+            serde_json::from_str(&place.read(&format!("s/{name}/manifest.json"))).unwrap();
+        assert_eq!(manifest["cells"][2], 1);
+    }
+    let manifest: serde_json::Value = serde_json::from_str(&place.read("s/manifest.json")).unwrap();
+    assert!(manifest["program"].as_str().unwrap().starts_with("ballast-gpr"));
+    assert_eq!(
+        manifest["spheres"]["stones"].as_u64(),
+        rows.iter().find(|r| r["name"] == "bed").unwrap()["stones"].as_u64()
+    );
+    assert_eq!(place.read("s/slices.csv").lines().count(), 1 + rows.len());
+    place.ok(&["run", "s/slice-1", "s/slice-2"]);
+}

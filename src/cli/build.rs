@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use clap::Args;
 
+use crate::cli::build_slices;
 use crate::cli::cells::Cells;
 use crate::cli::cost_choice;
 use crate::cli::error::CliError;
@@ -20,7 +21,7 @@ use crate::files;
 use crate::forward::Progress;
 use crate::gprmax::{self, InputOptions};
 use crate::raster;
-use crate::scene::{self, FoulingAmount, PackingMethod, SceneSpec};
+use crate::scene::{self, FoulingAmount, PackingMethod, Scene, SceneSpec};
 use crate::units::Share;
 
 /// Build a scene: pack the stones, mix the materials, draw the map, write the gprMax input.
@@ -38,6 +39,11 @@ pub struct BuildArgs {
     /// Build NUM siblings with seeds counted from --seed, each in its own folder below --out.
     #[arg(long, value_name = "NUM", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub realisations: u32,
+    /// Cut the bed of spheres with NUM planes, evenly spaced, and build each section for two dimensions in a folder of its own below
+    /// --out: an ensemble. The folder itself holds the bed; `slices.csv` has the void share of every section, of the bed and
+    /// of discs packed by random sequential adsorption.
+    #[arg(long, value_name = "NUM", value_parser = clap::value_parser!(u32).range(1..=10_000), conflicts_with = "realisations")]
+    pub slices: Option<u32>,
     /// Choose the cheapest cell size, smoothing and order, with absorbing cells to match, whose error the cost table gives as at most this (see `cost fdtd2d`).
     #[arg(long, value_name = "SHARE", conflicts_with_all = ["cell", "smoothing", "order"])]
     pub tolerance: Option<Share>,
@@ -70,6 +76,9 @@ pub fn run(args: &BuildArgs) -> Result<(), CliError> {
         .map(|path| Ok::<_, CliError>((path.display().to_string(), files::read_text(path)?)))
         .transpose()?;
     let base = args.out.clone().unwrap_or_else(|| default_folder(&spec, args.realisations));
+    if let Some(count) = args.slices {
+        return build_slices::run(args, &spec, &base, count, template.as_ref());
+    }
     let bar = Bar::new("building");
     let mut manifests: Vec<serde_json::Value> = Vec::new();
     for index in 0..args.realisations {
@@ -140,10 +149,23 @@ pub fn build_folder(
     force: bool,
 ) -> Result<Manifest, CliError> {
     folder::check_free(target, force)?;
-    let (mut scene, settled) = settle::resolve(spec, Some(target))?;
+    let (scene, settled) = settle::resolve(spec, Some(target))?;
     for line in settled.iter().flat_map(settle::told) {
         eprintln!("{line}");
     }
+    build_scene(scene, target, template, force)
+}
+
+/// Builds the folder of a scene that is resolved and packed.
+///
+/// # Errors
+/// When it cannot be built or written.
+pub fn build_scene(
+    mut scene: Scene,
+    target: &Path,
+    template: Option<(String, String)>,
+    force: bool,
+) -> Result<Manifest, CliError> {
     let started = Instant::now();
     let model = raster::build_model(&scene)?;
     let cells = Cells::of(&model)?;

@@ -8,6 +8,7 @@ use crate::cli::folder;
 use crate::files;
 use crate::model::{Effects, Model, Order};
 use crate::packing::SphereBed;
+use crate::packing::settle::{Settled, Stage};
 use crate::scene::{Arrivals, BulkPermittivity, FoulingReport, Layer, Scene, SceneSpec};
 
 /// Wall times of a build, s. The only figures of a folder that differ between two builds of the same scene.
@@ -165,6 +166,98 @@ impl Manifest {
     pub fn write(&self, path: &Path) -> Result<(), CliError> {
         let mut text = serde_json::to_string_pretty(self)?;
         text.push('\n');
+        Ok(files::write_bytes(path, text.as_bytes())?)
+    }
+}
+
+/// Wall times of a packing, s: what differs between two calls with the same scene.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct PackSeconds {
+    /// Until the stones lie where they do.
+    pub packing: f64,
+    /// Writing files and figures.
+    pub writing: f64,
+}
+
+/// What a folder with a packing alone holds.
+#[derive(Debug, Clone, serde::Serialize)]
+pub struct PackManifest {
+    /// Version of this file's format.
+    pub format_version: u32,
+    /// Program, version and commit.
+    pub program: String,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// The resolved scene, as in `scene.toml`.
+    pub scene: SceneSpec,
+    /// What the discs came to; absent in space.
+    pub packing: Option<PackingFigures>,
+    /// What the bed of spheres came to, where there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spheres: Option<PackingFigures>,
+    /// How the bed settled, where it did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub settled: Option<SettledFigures>,
+    /// Wall times.
+    pub seconds: PackSeconds,
+}
+
+/// How a bed settled.
+#[derive(Debug, Clone, serde::Serialize)]
+pub struct SettledFigures {
+    /// Time step, s.
+    pub time_step_s: f64,
+    /// Steps and state at the end of each stage, without wall times.
+    pub stages: Vec<serde_json::Value>,
+    /// Stones that were struck off above the bed's height.
+    pub struck_off: usize,
+    /// Stones that left the box.
+    pub lost: usize,
+}
+
+impl SettledFigures {
+    fn of(settled: &Settled) -> Self {
+        let stage = |stage: &Stage| {
+            serde_json::json!({
+                "name": stage.name,
+                "stones": stage.stones,
+                "steps": stage.steps,
+                "simulated_seconds": stage.simulated_seconds,
+                "energy_ratio": stage.energy_ratio,
+                "unbalanced_ratio": stage.unbalanced_ratio,
+                "at_rest": stage.at_rest,
+            })
+        };
+        Self {
+            time_step_s: settled.time_step.si(),
+            stages: settled.stages.iter().map(stage).collect(),
+            struck_off: settled.struck_off,
+            lost: settled.lost,
+        }
+    }
+}
+
+impl PackManifest {
+    /// Collects the figures of a packed scene.
+    pub fn of(scene: &Scene, settled: Option<&Settled>, seconds: PackSeconds) -> Self {
+        Self {
+            format_version: 1,
+            program: folder::program(),
+            seed: scene.spec.seed,
+            scene: scene.spec.clone(),
+            packing: PackingFigures::of(scene),
+            spheres: scene.spheres.as_ref().map(PackingFigures::of_spheres),
+            settled: settled.map(SettledFigures::of),
+            seconds,
+        }
+    }
+
+    /// Writes the manifest.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), CliError> {
+        let text = serde_json::to_string_pretty(self)? + "\n";
         Ok(files::write_bytes(path, text.as_bytes())?)
     }
 }

@@ -3,6 +3,7 @@
 mod batch;
 mod bscan;
 mod build;
+mod build_slices;
 mod cells;
 mod checkpoint;
 mod child;

@@ -1,11 +1,13 @@
 //! `pack`: the packing alone, with its files, figures and statistics.
 
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use clap::Args;
 
 use crate::cli::error::CliError;
 use crate::cli::folder;
+use crate::cli::manifest::{PackManifest, PackSeconds};
 use crate::cli::pack_spheres;
 use crate::cli::progress::Bar;
 use crate::cli::scene_args::SceneArgs;
@@ -65,7 +67,10 @@ pub fn run(args: &PackArgs) -> Result<(), CliError> {
     if let (Some(folder), true) = (&args.out, scene.packing.is_some() || scene.spheres.is_some()) {
         scene.spec.to_toml()?;
         folder::prepare(folder, args.force)?;
+        let started = Instant::now();
         write_scene(&mut scene, folder)?;
+        let seconds = PackSeconds { packing: scene.packing_seconds, writing: started.elapsed().as_secs_f64() };
+        PackManifest::of(&scene, settled.as_ref(), seconds).write(&folder.join(folder::MANIFEST))?;
     }
     if let Some(bed) = &scene.spheres {
         return pack_spheres::print(&scene, bed, settled.as_ref(), args.json);

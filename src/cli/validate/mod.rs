@@ -5,6 +5,7 @@ mod arrivals;
 mod benedetto;
 mod echoes;
 mod irazabal;
+mod spheres;
 
 use std::path::PathBuf;
 
@@ -52,6 +53,8 @@ pub enum CaseName {
     /// Spheres with bounded rolling friction: Irazábal et al. 2017 (in the full tier the angle of repose over five seeds each, and
     /// the lateral resistance of a sleeper: hours).
     Irazabal2017,
+    /// Settled beds of equal spheres and of ballast gradings: solid shares and voids (full tier).
+    Spheres,
     /// Echoes of real packings, ten seeds, clean and fouled, true and equivalent stones (full tier).
     TankEchoes,
 }
@@ -100,6 +103,7 @@ pub fn run(args: &ValidateArgs) -> Result<(), CliError> {
             CaseName::TankArrivals => arrivals::validate(args.out.as_deref())?,
             CaseName::Gprmax => agreement::validate(args)?,
             CaseName::Irazabal2017 => irazabal::validate(args.tier)?,
+            CaseName::Spheres => spheres::validate()?,
             CaseName::TankEchoes => echoes::validate(args.out.as_deref())?,
         };
         misses += report.misses;
