@@ -18,7 +18,7 @@ use fuzz_support::watch::{Budget, Watched, run, run_one};
 #[global_allocator]
 static ALLOCATOR: Watched = Watched;
 
-/// About ten seconds in all on one core, of which the deadlines are generous multiples.
+/// About fifteen seconds in all on one core, of which the deadlines are generous multiples.
 #[test]
 fn mutated_inputs_are_survived() {
     let mut failures = vec![];
@@ -26,6 +26,7 @@ fn mutated_inputs_are_survived() {
         let inputs = match target {
             Target::In => 20_000,
             Target::Traces | Target::Voxels => 4_000,
+            Target::Dzt | Target::Dt1 | Target::Mala | Target::SegY | Target::Iprb | Target::Ids => 3_000,
             _ => 5_000,
         };
         let budget = Budget { inputs, time: Duration::from_secs(60) };

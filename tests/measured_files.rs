@@ -321,7 +321,8 @@ struct Reference {
     /// Traces and samples, with those that are no signal.
     shape: (usize, usize),
     sum: f64,
-    is_dzt: bool,
+    /// Where the samples of DZT begin.
+    data_offset: Option<usize>,
 }
 
 /// The real files, unpacked where need be.
@@ -360,7 +361,7 @@ fn references(unpacked: &Path) -> Option<Vec<Reference>> {
         let sum = meta["all_sum"].as_f64().or(meta["sum_all"].as_f64()).unwrap();
         let file = unpack(&folder.join(file), &unpacked.join(stem));
         found.push(Reference {
-            is_dzt: stem.starts_with("dzt"),
+            data_offset: meta["data_offset"].as_u64().map(|offset| offset as usize),
             file,
             first_trace,
             shape: (length(1), length(0)),
@@ -393,7 +394,8 @@ fn unpack(file: &Path, into: &Path) -> PathBuf {
 fn real_files_are_what_other_readers_say() {
     let folder = tempfile::tempdir().unwrap();
     let Some(references) = references(folder.path()) else { return };
-    for Reference { file, first_trace, shape, sum, is_dzt } in references {
+    for Reference { file, first_trace, shape, sum, data_offset } in references {
+        let is_dzt = data_offset.is_some();
         let recording = read(&file).unwrap_or_else(|error| panic!("{error}"));
         let scan = &recording.channels[0];
         // The others give DZT as it is stored: two words that are no signal, and 16 bits around 32768.
@@ -408,9 +410,9 @@ fn real_files_are_what_other_readers_say() {
             // The references of floats have nine digits.
             assert!((ours + zero - theirs).abs() <= 1e-8 * theirs.abs(), "{} sample {index}", file.display());
         }
-        // The hidden words: 0, 1, 2, …, and the marks, of which the first scan's first trace tells the only one.
+        // What is left out: the counters 0, 1, 2, …, and the marks, which a user sets here and there.
         let counters: usize = if is_dzt { (0..scan.count()).sum() } else { 0 };
-        let marks = if is_dzt { first_trace[1] } else { 0.0 };
+        let marks = data_offset.map_or(0.0, |offset| marks(&file, offset, shape.1, recording.sample_kind.bytes()));
         let all = scan.samples().iter().sum::<f64>() + zero * scan.samples().len() as f64 + counters as f64 + marks;
         assert!((all - sum).abs() <= 1e-9 * sum.abs(), "{}: {all} {sum}", file.display());
         let warned = file.ends_with("mala_impdar/ten_col.rd3");
@@ -419,6 +421,16 @@ fn real_files_are_what_other_readers_say() {
             assert_eq!((scan.count(), scan.samples_per_trace()), (1040, 510));
         }
     }
+}
+
+/// The sum of the second words of all scans.
+fn marks(file: &Path, offset: usize, samples: usize, width: usize) -> f64 {
+    let bytes = fs::read(file).unwrap();
+    let word = |scan: &[u8]| match width {
+        2 => f64::from(u16::from_le_bytes([scan[2], scan[3]])),
+        _ => f64::from(i32::from_le_bytes([scan[4], scan[5], scan[6], scan[7]])),
+    };
+    bytes[offset..].chunks_exact(samples * width).map(word).sum()
 }
 
 /// Real files with bytes changed at random: read or refused in words that name field and place, and never more samples than

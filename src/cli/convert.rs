@@ -35,7 +35,7 @@ pub struct ConvertArgs {
     /// Component of a simulated field (Ex, Ey, Ez, Hx, Hy, Hz) [default: Ez, or else the strongest electric field].
     #[arg(long, value_name = "NAME", value_parser = read_component)]
     pub component: Option<Component>,
-    /// Resample to this time step (5ps), band-limited.
+    /// Resample to this time step (5ps), band-limited; a text with uneven times by a cubic spline.
     #[arg(long, value_name = "TIME", value_parser = read_step)]
     pub step: Option<Seconds>,
     /// Overwrite files that are there.
@@ -105,7 +105,7 @@ pub fn run(args: &ConvertArgs) -> Result<(), CliError> {
             )));
         }
     }
-    let mut scan = trace_file::read_component(&args.from, args.component)?;
+    let mut scan = trace_file::read_component(&args.from, args.component, args.step)?;
     if let Some(step) = args.step {
         scan = resampled(&scan, step)?;
     }

@@ -5,9 +5,12 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use crate::cli::error::CliError;
+use crate::cli::folder;
+use crate::cli::process_figure;
 use crate::cli::table::Report;
 use crate::cli::trace_file;
 use crate::measured::{Recording, SampleKind};
+use crate::plot::{Axis, Chart, Figure as _, Panels, Series};
 use crate::trace::BScan;
 
 /// Show what is in files of traces: format, channels, traces, samples, time axis, antenna, and what a header contradicts.
@@ -18,7 +21,7 @@ use crate::trace::BScan;
 #[derive(Debug, Clone, Args)]
 #[command(after_help = "\
 Example:
-  ballast-gpr inspect plate.dzt
+  ballast-gpr inspect plate.dzt --figure plate
   ballast-gpr inspect *.DZT --json")]
 pub struct InspectArgs {
     /// Files of instruments, gprMax's `.h5` or `.out`, text, or folders with a result. Of a pair, either file will do.
@@ -27,6 +30,12 @@ pub struct InspectArgs {
     /// List every field of the header too.
     #[arg(long)]
     pub header: bool,
+    /// Draw the radargram of each channel as STEM.png and STEM.svg; for one FILE.
+    #[arg(long, value_name = "STEM")]
+    pub figure: Option<PathBuf>,
+    /// Overwrite figures that are there.
+    #[arg(long)]
+    pub force: bool,
     /// Print all of it as JSON.
     #[arg(long)]
     pub json: bool,
@@ -35,9 +44,20 @@ pub struct InspectArgs {
 /// Runs the subcommand.
 ///
 /// # Errors
-/// When a file cannot be read.
+/// When a file cannot be read, or a figure not written.
 pub fn run(args: &InspectArgs) -> Result<(), CliError> {
+    if let Some(stem) = &args.figure {
+        if args.files.len() > 1 {
+            return Err(CliError::input("`--figure` draws one file\n\nhint: name one, or leave `--figure` out"));
+        }
+        for ending in ["png", "svg"] {
+            folder::may_write(&folder::with_ending(stem, ending), args.force)?;
+        }
+    }
     let contents = args.files.iter().map(|file| Content::of(file)).collect::<Result<Vec<_>, _>>()?;
+    if let (Some(stem), [content]) = (&args.figure, contents.as_slice()) {
+        content.draw(stem)?;
+    }
     if args.json {
         let values: Vec<_> = contents.iter().map(Content::json).collect();
         let value = if values.len() == 1 { values[0].clone() } else { values.into() };
@@ -84,6 +104,24 @@ impl Content {
 
     fn kind(&self) -> Option<SampleKind> {
         self.recording.as_ref().map(|recording| recording.sample_kind)
+    }
+
+    /// One radargram for each channel; of a single trace its curve.
+    fn draw(&self, stem: &Path) -> Result<(), CliError> {
+        let chart = |scan: &BScan| match scan.trace(0) {
+            Some(trace) if scan.count() == 1 => {
+                let points = trace.times().zip(&trace.samples).map(|(t, v)| (1e9 * t, *v)).collect();
+                Chart::new(&scan.name, Axis::linear("time", "ns"), Axis::linear("amplitude", ""))
+                    .with(Series::line(&scan.name, points))
+            }
+            _ => process_figure::radargram(&scan.name, scan),
+        };
+        let charts: Vec<_> = self.channels().iter().map(chart).collect();
+        let name = stem.file_name().map_or("traces".into(), |name| name.to_string_lossy().into_owned());
+        let title = self.path.display().to_string();
+        Panels::stacked(&title, charts).write(stem.parent().unwrap_or(Path::new("")), &name)?;
+        eprintln!("written: {0}.png, {0}.svg", stem.display());
+        Ok(())
     }
 
     fn table(&self, header: bool) -> Report {

@@ -12,6 +12,7 @@ use crate::files;
 use crate::gprmax;
 use crate::measured::{self, Format, Recording};
 use crate::trace::{AScan, BScan, Component, ReceiverTraces, Traces};
+use crate::units::Seconds;
 
 /// Names of the results in a folder, the preferred first.
 const RESULTS: [&str; 2] = ["fdtd.h5", "gprmax.h5"];
@@ -83,17 +84,21 @@ pub fn read(target: &Path) -> Result<AScan, CliError> {
 /// # Errors
 /// When the file cannot be read, or has no such channel or trace.
 pub fn read_scan(target: &Path) -> Result<BScan, CliError> {
-    read_component(target, None)
+    read_component(target, None, None)
 }
 
 /// As [`read_scan`], of one component of the field where a file of gprMax holds several; each has its own time of the first
-/// sample, H half a step before E.
+/// sample, H half a step before E. Times of a text that are uneven are brought onto an axis of the step `resample`, if given.
 ///
 /// # Errors
 /// As [`read_scan`]; when the component was not recorded.
-pub fn read_component(target: &Path, component: Option<Component>) -> Result<BScan, CliError> {
+pub fn read_component(
+    target: &Path,
+    component: Option<Component>,
+    resample: Option<Seconds>,
+) -> Result<BScan, CliError> {
     let named = Named::of(target);
-    let scan = load(&named, component, Columns::All)?.scan;
+    let scan = load(&named, component, Columns::All(resample))?.scan;
     match named.trace {
         Some(index) => {
             let trace = picked(&scan, index, &named.path)?;
@@ -154,10 +159,11 @@ struct Scans {
 }
 
 /// Which columns of a text are read when none is named.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 enum Columns {
     First,
-    All,
+    /// All, onto an axis of this step where one is given.
+    All(Option<Seconds>),
 }
 
 fn load(named: &Named, component: Option<Component>, columns: Columns) -> Result<Scans, CliError> {
@@ -181,10 +187,12 @@ fn load(named: &Named, component: Option<Component>, columns: Columns) -> Result
         gprmax_scan(&path, component)?
     } else {
         let (name, text) = (short_name(&path), files::read_text(&path)?);
-        let traces = if columns == Columns::First && named.trace.is_none() {
-            vec![text::read_trace(&text, &name, &text::TextOptions::default())?]
-        } else {
-            text::read_traces(&text, &name, None)?
+        let traces = match columns {
+            Columns::First if named.trace.is_none() => {
+                vec![text::read_trace(&text, &name, &text::TextOptions::default())?]
+            }
+            Columns::First => text::read_traces(&text, &name, None)?,
+            Columns::All(resample) => text::read_traces(&text, &name, resample)?,
         };
         BScan::of(&traces, name)?
     };
@@ -327,7 +335,6 @@ pub fn is_hdf5(path: &Path) -> Result<bool, CliError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::units::Seconds;
 
     #[test]
     fn a_trace_is_named_behind_the_path() {
