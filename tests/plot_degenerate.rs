@@ -1,8 +1,8 @@
 //! Data that break plotting programs: none, one, constant, gaps, the huge and the tiny.
 
 use ballast_gpr::plot::{
-    Axis, Band, Chart, Figure, MapFigure, Marker, PackingFigure, Panels, PlotError, ReferenceLine, Scale, Series,
-    Stroke,
+    Axis, Band, Chart, Figure, MapFigure, Mark, Marker, PackingFigure, Panels, Pixels, PlotError, ReferenceLine, Scale,
+    Series, Shades, Stroke,
 };
 use proptest::prelude::*;
 
@@ -127,4 +127,40 @@ fn contradicting_data_are_refused_with_the_numbers() {
     chart.size = [1e9, 5.0];
     assert!(matches!(chart.png(), Err(PlotError::Size { .. })));
     assert!(Panels::stacked("", vec![]).svg().is_ok());
+}
+
+fn radargram() -> Chart {
+    let values = vec![-1.0, 0.0, 1.0, f64::NAN, 0.5, -0.5];
+    let mut chart = Chart::new("line", Axis::linear("trace", ""), Axis::linear("time", "ns").downwards());
+    let (x, y) = ((0.0, 1.0), (0.0, 2.0));
+    chart.pixels = Some(Pixels { values, columns: 2, rows: 3, x, y, shades: Shades::Grey, limit: None });
+    chart
+}
+
+/// Two traces of three samples: the first sample of the first is black at the top left, its last white at the bottom left;
+/// what is not a number is white; 0 ns is written above 2 ns.
+#[test]
+fn the_first_sample_of_a_radargram_is_at_the_top() {
+    let sheet = radargram().lay_out().unwrap();
+    let picture = |mark: &Mark| if let Mark::Picture { image, .. } = mark { Some(image.clone()) } else { None };
+    let image = sheet.marks.iter().find_map(picture).unwrap();
+    let at = |u: f64, v: f64| {
+        let (x, y) = ((u * image.width as f64) as usize, (v * image.height as f64) as usize);
+        image.pixels[3 * (y * image.width + x)]
+    };
+    assert_eq!([at(0.1, 0.1), at(0.1, 0.5), at(0.1, 0.9)], [0, 128, 255]);
+    assert_eq!([at(0.9, 0.1), at(0.9, 0.5), at(0.9, 0.9)], [255, 191, 64]);
+    let highest = |wanted: f64| {
+        let boxes = sheet.text_boxes();
+        let those = boxes.iter().filter(|(_, text)| text.parse() == Ok(wanted)).map(|(place, _)| place.y);
+        those.fold(f64::INFINITY, f64::min)
+    };
+    assert!(highest(0.0) < highest(2.0) && highest(2.0) < 600.0, "{} {}", highest(0.0), highest(2.0));
+}
+
+#[test]
+fn pixels_that_do_not_fill_their_grid_are_refused() {
+    let mut chart = radargram();
+    chart.pixels.as_mut().unwrap().rows = 4;
+    assert!(chart.lay_out().is_err());
 }
