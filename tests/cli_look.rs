@@ -210,6 +210,9 @@ fn the_help_tells_what_a_user_needs() {
     says(&["compare", "--help"], &["--to", "FROM..TO", "plate-echo", "two-column text", "--free-space", "--no-figure"]);
     says(&["explain", "--help"], &["FOLDER|SCENE.toml|FILE.in", "--threads", "--json"]);
     says(&["pack", "--help"], &["--calibrate", "--list-gradings", "--out"]);
+    says(&["pulse", "from-plate", "--help"], &["--free-space", "--height", "#excitation_file", "Example:"]);
+    says(&["estimate", "--help"], &["TDSP", "SRM", "CRIM", "--thickness", "--seeds", "Example:"]);
+    says(&["report", "--help"], &["--measured", "--plate", "--run", "opens offline", "Example:"]);
     says(&["gprmax", "--help"], &["install", "check"]);
     says(&["gprmax", "install", "--help"], &["needs Python 3.11", "--json"]);
     says(&["completions", "--help"], &["bash", "zsh", "fish"]);

@@ -126,7 +126,11 @@ pub enum PolarityFlag {
     Flip,
 }
 
-fn read_window(text: &str) -> Result<(Seconds, Seconds), String> {
+/// Reads a part of a time axis, FROM..TO.
+///
+/// # Errors
+/// With what to write.
+pub fn read_window(text: &str) -> Result<(Seconds, Seconds), String> {
     let (from, to) = text.split_once("..").ok_or("write it as FROM..TO, for example 2ns..15ns")?;
     let read = |text: &str| text.parse::<Seconds>().map_err(|error| error.to_string());
     let (from, to) = (read(from)?, read(to)?);
@@ -351,7 +355,10 @@ fn measured_is_second(args: &CompareArgs, comparison: &Comparison) -> bool {
 }
 
 /// Windows that hold the echoes of every folder among the targets; none where no target is one.
-fn expected(targets: &[&Path]) -> Result<ExpectedEchoes, CliError> {
+///
+/// # Errors
+/// When a folder's manifest cannot be read.
+pub fn expected(targets: &[&Path]) -> Result<ExpectedEchoes, CliError> {
     let mut found = ExpectedEchoes::default();
     let join = |window: &mut Option<(Seconds, Seconds)>, [from, to]: Window| {
         let (low, high) = window.map_or((from, to), |(low, high)| (low.si().min(from), high.si().max(to)));

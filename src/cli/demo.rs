@@ -6,13 +6,12 @@ use std::time::Instant;
 use clap::Args;
 
 use crate::cli::build::build_folder;
-use crate::cli::checkpoint::CheckpointArgs;
 use crate::cli::comparison_figure;
 use crate::cli::error::CliError;
 use crate::cli::folder;
 use crate::cli::interrupt;
 use crate::cli::progress::Bar;
-use crate::cli::run::{PrecisionName, RunArgs, SolverName, run_one};
+use crate::cli::run::{SolverName, plain_run, run_one};
 use crate::cli::table::Report;
 use crate::cli::trace_file;
 use crate::compare::{self, CompareOptions, ExpectedEchoes, Polarity};
@@ -66,12 +65,12 @@ pub fn run(args: &DemoArgs) -> Result<(), CliError> {
     let folders = [("clean", &clean), ("fouled-20cm", &fouled)].map(|(name, spec)| (args.out.join(name), spec));
     for (target, spec) in &folders {
         build_folder(spec, target, None, args.force)?;
-        run_one(&run_args(target, SolverName::Fdtd, args.force), target)?;
+        run_one(&plain_run(target, SolverName::Fdtd, args.force), target)?;
     }
     let _ = step(3);
     if args.with_gprmax {
         for (target, _) in &folders {
-            run_one(&run_args(target, SolverName::Gprmax, args.force), target)?;
+            run_one(&plain_run(target, SolverName::Gprmax, args.force), target)?;
         }
     }
     let traces = [trace_file::read(&folders[0].0)?, trace_file::read(&folders[1].0)?];
@@ -141,23 +140,6 @@ pub fn run(args: &DemoArgs) -> Result<(), CliError> {
     println!("maps, packings, gprMax inputs: {} and {}", folders[0].0.display(), folders[1].0.display());
     println!("done in {:.1} s", started.elapsed().as_secs_f64());
     Ok(())
-}
-
-fn run_args(target: &Path, solver: SolverName, force: bool) -> RunArgs {
-    RunArgs {
-        keep: CheckpointArgs::default(),
-        targets: vec![target.into()],
-        solver,
-        threads: None,
-        jobs: None,
-        order: None,
-        precision: PrecisionName::Single,
-        out: None,
-        force,
-        gprmax_python: None,
-        traces: None,
-        json: false,
-    }
 }
 
 fn exact_line(exact: Seconds, ours: Seconds) -> String {

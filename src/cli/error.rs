@@ -153,6 +153,28 @@ impl From<crate::study::EchoError> for CliError {
     }
 }
 
+impl From<crate::study::PulseError> for CliError {
+    fn from(error: crate::study::PulseError) -> Self {
+        use crate::study::PulseError;
+        match error {
+            PulseError::Scene(error) => error.into(),
+            PulseError::Echo(error) => error.into(),
+            PulseError::Compare(error) => error.into(),
+        }
+    }
+}
+
+impl From<crate::study::BiasError> for CliError {
+    fn from(error: crate::study::BiasError) -> Self {
+        use crate::study::BiasError;
+        match error {
+            BiasError::Scene(error) => error.into(),
+            BiasError::Echo(error) => error.into(),
+            BiasError::Mix(_) => Self::input(error.to_string()),
+        }
+    }
+}
+
 impl From<crate::study::DimensionError> for CliError {
     fn from(error: crate::study::DimensionError) -> Self {
         use crate::study::DimensionError;

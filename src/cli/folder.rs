@@ -15,7 +15,7 @@ pub const MANIFEST: &str = "manifest.json";
 /// Name of the gprMax input file.
 pub const MODEL: &str = "model.in";
 /// Files that decide what a solver computes, hashed into each result.
-const MODEL_FILES: [&str; 3] = [MODEL, "model_geometry.h5", "model_materials.json"];
+const MODEL_FILES: [&str; 4] = [MODEL, "model_geometry.h5", "model_materials.json", "model_pulse1.txt"];
 
 /// Refuses a folder that may not be written, before anything is computed for it.
 ///

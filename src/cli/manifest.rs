@@ -10,6 +10,7 @@ use crate::model::{Effects, Model, Order};
 use crate::packing::SphereBed;
 use crate::packing::settle::{Settled, Stage};
 use crate::scene::{Arrivals, BulkPermittivity, FoulingReport, Layer, Scene, SceneSpec};
+use crate::study;
 
 /// Wall times of a build, s. The only figures of a folder that differ between two builds of the same scene.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -70,9 +71,11 @@ pub struct ExpectedWindows {
 }
 
 impl ExpectedWindows {
-    /// The windows of [`Scene::echo_windows`], counted from the start of a trace: the pulse peaks at `sqrt(2) / f`.
+    /// The windows of [`Scene::echo_windows`], counted from the start of a trace: a formula's pulse peaks at `sqrt(2) / f`, one
+    /// given as samples where its envelope does.
     pub fn of(scene: &Scene) -> Self {
-        let pulse_delay = std::f64::consts::SQRT_2 / scene.spec.antenna.frequency.si();
+        let formula = std::f64::consts::SQRT_2 / scene.spec.antenna.frequency.si();
+        let pulse_delay = scene.pulse.as_ref().and_then(study::pulse_peak).map_or(formula, |peak| peak.si());
         let [surface, plate] = scene.echo_windows().map(|window| window.map(|travel| pulse_delay + travel.si()));
         Self { pulse_delay, surface, plate: scene.spec.tank.metal_plate.then_some(plate) }
     }

@@ -15,6 +15,7 @@ mod cost_choice;
 mod demo;
 mod ensemble_figure;
 mod error;
+mod estimate;
 mod experiment;
 mod explain;
 mod folder;
@@ -29,6 +30,8 @@ mod pack_spheres;
 mod process;
 mod process_figure;
 mod progress;
+mod pulse;
+mod report;
 mod run;
 mod scene_args;
 mod settle;
@@ -77,6 +80,9 @@ enum Command {
     Pack(pack::PackArgs),
     Validate(validate::ValidateArgs),
     Cost(cost::CostArgs),
+    Pulse(pulse::PulseArgs),
+    Estimate(estimate::EstimateArgs),
+    Report(report::ReportArgs),
     Experiment(experiment::ExperimentArgs),
     Gprmax(gprmax::GprMaxArgs),
     /// Print the completion script of a shell: `source <(ballast-gpr completions bash)`.
@@ -102,6 +108,9 @@ pub fn main() -> ExitCode {
         Command::Pack(args) => pack::run(args),
         Command::Validate(args) => validate::run(args),
         Command::Cost(args) => cost::run(args),
+        Command::Pulse(args) => pulse::run(args),
+        Command::Estimate(args) => estimate::run(args),
+        Command::Report(args) => report::run(args),
         Command::Experiment(args) => experiment::run(args),
         Command::Gprmax(args) => gprmax::run(args),
         Command::Completions { shell } => {

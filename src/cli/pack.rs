@@ -127,6 +127,11 @@ pub fn percent(share: Share) -> f64 {
 /// # Errors
 /// When a file cannot be written.
 pub fn write_scene(scene: &mut Scene, folder: &Path) -> Result<(), CliError> {
+    if let Some(pulse) = &scene.pulse {
+        let text = crate::gprmax::excitation_text("pulse", pulse);
+        files::write_bytes(&folder.join(PULSE), text.as_bytes())?;
+        scene.spec.antenna.pulse = Some(PULSE.into());
+    }
     if matches!(scene.spec.packing.method, PackingMethod::File | PackingMethod::Dem) {
         scene.spec.packing.method = PackingMethod::File;
         scene.spec.packing.file = Some(PACKING.into());
@@ -138,6 +143,9 @@ pub fn write_scene(scene: &mut Scene, folder: &Path) -> Result<(), CliError> {
     files::write_bytes(&folder.join(folder::SCENE), scene.spec.to_toml()?.as_bytes())?;
     write_packing(scene, folder)
 }
+
+/// Name of the pulse that a scene has from a file.
+const PULSE: &str = "pulse.txt";
 
 /// Name of the packing that keeps every bit.
 pub const PACKING: &str = "packing.json";

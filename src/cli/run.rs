@@ -143,6 +143,24 @@ pub fn run(args: &RunArgs) -> Result<(), CliError> {
     Ok(())
 }
 
+/// The flags of a plain run of one target.
+pub fn plain_run(target: &Path, solver: SolverName, force: bool) -> RunArgs {
+    RunArgs {
+        keep: CheckpointArgs::default(),
+        targets: vec![target.into()],
+        solver,
+        threads: None,
+        jobs: None,
+        order: None,
+        precision: PrecisionName::Single,
+        out: None,
+        force,
+        gprmax_python: None,
+        traces: None,
+        json: false,
+    }
+}
+
 /// Runs one target in this process.
 ///
 /// # Errors

@@ -72,6 +72,10 @@ pub struct SceneArgs {
     /// Centre frequency of the pulse [default: 1 GHz].
     #[arg(long, value_name = "FREQUENCY", allow_hyphen_values = true)]
     pub frequency: Option<Hertz>,
+    /// File of the antenna's pulse, as `pulse from-plate` writes it (a gprMax `#excitation_file`), in place of a formula;
+    /// `--frequency` stays the nominal one.
+    #[arg(long, visible_alias = "excitation-file", value_name = "FILE")]
+    pub pulse: Option<PathBuf>,
     /// Cell size [default: 2 mm].
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub cell: Option<Metres>,
@@ -207,6 +211,9 @@ impl SceneArgs {
         set(&mut spec.packing.voids, self.voids);
         set(&mut spec.seed, self.seed);
         set(&mut spec.antenna.frequency, self.frequency);
+        if self.pulse.is_some() {
+            spec.antenna.pulse.clone_from(&self.pulse);
+        }
         set(&mut spec.grid.cell, self.cell);
         set(&mut spec.grid.time_window, self.time_window);
         set(&mut spec.grid.order, self.order);

@@ -36,6 +36,21 @@ impl Report {
         self.elsewhere.push((self.rows.len().saturating_sub(1), column, text.into()));
     }
 
+    /// The title.
+    pub fn title(&self) -> &str {
+        &self.title
+    }
+
+    /// The heads of the columns.
+    pub fn header(&self) -> &[String] {
+        &self.header
+    }
+
+    /// The rows.
+    pub fn rows(&self) -> &[Vec<String>] {
+        &self.rows
+    }
+
     /// Prints the table on standard output.
     pub fn print(&self) {
         println!("{}", self.title);

@@ -18,6 +18,7 @@ pub mod permittivity;
 mod picks;
 mod plate;
 pub mod process;
+pub mod pulse;
 mod radargrams;
 mod resample;
 mod similarity;

@@ -206,6 +206,13 @@ pub fn pick_echoes(trace: &AScan, expected: &ExpectedEchoes) -> Picks {
     Picks { direct: echo(direct), surface: echo(surface), plate: echo(plate) }
 }
 
+/// The echo where the envelope of a trace is largest; none in a trace without samples or of zeros.
+pub(super) fn strongest(trace: &AScan) -> Option<Echo> {
+    let finder = Finder::new(trace);
+    let peak = (0..finder.envelope.len()).max_by(|a, b| finder.envelope[*a].total_cmp(&finder.envelope[*b]))?;
+    (finder.largest > 0.0).then(|| finder.echo(peak))
+}
+
 /// The envelope of a trace and what counts as an echo in it.
 struct Finder<'a> {
     trace: &'a AScan,

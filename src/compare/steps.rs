@@ -92,6 +92,17 @@ pub enum Step {
         /// Its last time.
         to: Seconds,
     },
+    /// What lies outside a gate with soft ends was set to zero.
+    Gated {
+        /// Where its reference is.
+        around: Seconds,
+        /// Kept before that.
+        before: Seconds,
+        /// Kept after that.
+        after: Seconds,
+        /// Length of the soft ends, inside what is kept.
+        taper: Seconds,
+    },
     /// The sign was turned.
     Flipped,
     /// The amplitude was divided by a number.
@@ -144,6 +155,14 @@ impl std::fmt::Display for Step {
                 write!(f, "resampled from {} to {}", rounded(from.si()), rounded(to.si()))
             }
             Self::Cropped { from, to } => write!(f, "cropped to {} to {}", rounded(from.si()), rounded(to.si())),
+            Self::Gated { around, before, after, taper } => write!(
+                f,
+                "gated from {} before {} to {} after it, ends of {}",
+                rounded(before.si()),
+                rounded(around.si()),
+                rounded(after.si()),
+                rounded(taper.si())
+            ),
             Self::Flipped => write!(f, "polarity flipped"),
             Self::Normalised { by, divisor } => write!(f, "divided by the {by}, {divisor:.4e}"),
         }
@@ -188,6 +207,14 @@ pub fn resample_to_step(trace: &AScan, time_step: Seconds) -> (AScan, Step) {
     let count = (duration / time_step.si() + 1e-9).floor() as usize + 1;
     let step = Step::Resampled { from: trace.time_step, to: time_step };
     (resample(trace, trace.first_sample, time_step, count), step)
+}
+
+/// A trace over its own window with another step; the trace itself where it has that step already.
+pub(super) fn resample_to(trace: &AScan, time_step: f64) -> AScan {
+    if (trace.time_step.si() / time_step - 1.0).abs() * trace.samples.len() as f64 <= 1e-6 {
+        return trace.clone();
+    }
+    resample_to_step(trace, Seconds(time_step)).0
 }
 
 /// Keeps the samples between two times, both included.

@@ -25,4 +25,4 @@ pub use reader::{
     COMMANDS, CommandKind, Directives, InFileError, Input, Note, Problem, input_files, read_directives, read_input,
     read_model,
 };
-pub use writer::{DEFAULT_TEMPLATE, InputOptions, WriteError, number, write_input};
+pub use writer::{DEFAULT_TEMPLATE, InputOptions, WriteError, excitation_text, number, write_input};

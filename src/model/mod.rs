@@ -19,6 +19,7 @@ mod paint;
 mod painted;
 mod painted3;
 mod palette;
+mod pulse_table;
 mod route;
 mod sampled;
 mod snapshot;
@@ -48,6 +49,7 @@ pub use paint::{
 pub use painted::Painted;
 pub use painted3::Painted3;
 pub use palette::{EdgeMaterial, FaceMaterial, MagneticAveraging};
+pub use pulse_table::{PulseTable, PulseTableError};
 pub use route::{MOST_POLES_IN_A_PLANE, Route};
 pub use sampled::{Between, Beyond, Sampled};
 pub use snapshot::{Snapshot, SnapshotCells, SnapshotError, SnapshotFormat, SnapshotTime};

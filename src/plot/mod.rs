@@ -42,7 +42,7 @@ pub use chart::{Band, Chart, Legend, Line, Marker, ReferenceLine, Series, Stroke
 pub use colour::{Colour, PALETTE, viridis};
 pub use error::PlotError;
 pub use figure::Figure;
-pub use image::Image;
+pub use image::{Image, base64};
 pub use map::{MapFigure, MapLayer, MapSymbol, SymbolKind};
 pub use packing::PackingFigure;
 pub use panels::Panels;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::geometry::Disc;
 use crate::model::{
     Averaging, Axis, DebyePole, Excitation, HertzianDipole, Material, MaterialId, Model, Object, Receiver, Source,
-    TimeWindow, Voxels, Waveform,
+    TimeWindow, Voxels, Waveform, WaveformKind,
 };
 use crate::scene::{Dimension, GeometryKind, Medium, PackingMethod, Scene, Smoothing};
 
@@ -301,9 +301,9 @@ impl Builder {
         let antenna = &scene.spec.antenna;
         self.model.waveforms.push(Waveform {
             id: "pulse".into(),
-            kind: antenna.waveform.clone(),
+            kind: scene.pulse.clone().map_or_else(|| antenna.waveform.clone(), WaveformKind::User),
             amplitude: 1.0,
-            frequency: antenna.frequency.si(),
+            frequency: if scene.pulse.is_some() { 0.0 } else { antenna.frequency.si() },
         });
         self.model.sources.push(Source::HertzianDipole(HertzianDipole {
             polarisation: Axis::Z,

@@ -4,7 +4,9 @@ mod build;
 mod discs;
 mod map;
 mod placement;
+mod turn;
 
 pub use build::{RasterError, antenna_alone, build_model};
 pub use map::{permittivity_map, permittivity_section};
 pub use placement::Placement;
+pub use turn::transverse_electric;

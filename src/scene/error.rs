@@ -38,6 +38,18 @@ pub enum SceneError {
         /// The format that is known.
         known: u32,
     },
+    /// A file of a pulse that is none.
+    #[error(
+        "the pulse `{}` line {line}: {what}\n\nhint: `ballast-gpr pulse from-plate PLATE --height 40cm --out pulse.txt` writes one", file.display()
+    )]
+    Pulse {
+        /// The file.
+        file: PathBuf,
+        /// Line, counted from 1.
+        line: usize,
+        /// What is wrong there.
+        what: String,
+    },
     /// The scene cannot be written as TOML.
     #[error("the scene cannot be written as TOML: {0}")]
     Serialise(String),

@@ -1,9 +1,12 @@
 //! From what the user wrote to a checked and packed scene.
 
+use std::path::Path;
 use std::time::Instant;
 
+use crate::files;
 use crate::geometry::{Disc, disc_rectangle_area};
 use crate::material::{self, BottomFilledBed, FoulingIndices};
+use crate::model::{Between, Beyond, PulseTable, Sampled};
 use crate::packing::{Packing, Porosity, RsaInput, RsaOutcome, SphereBed};
 use crate::units::constants::C0;
 use crate::units::{KilogramsPerCubicMetre, Metres, Seconds, Share};
@@ -29,6 +32,8 @@ pub struct Scene {
     pub packing: Option<Packing>,
     /// The bed of spheres, where there is one; also when the scene is a section through it.
     pub spheres: Option<SphereBed>,
+    /// The pulse as samples, where the antenna has one from a file.
+    pub pulse: Option<Sampled>,
     /// Walls and base.
     pub wall: Medium,
     /// What lies where in the bed.
@@ -95,6 +100,7 @@ pub fn resolve_with(spec: &SceneSpec, spheres: Option<SphereBed>) -> Result<Scen
     let voids = Porosity::new(spec.packing.voids)?;
     spec.packing.grading = GradingSpec::Curve(spec.packing.grading.curve()?);
     fill_in_materials(&mut spec)?;
+    let pulse = spec.antenna.pulse.as_deref().map(read_pulse).transpose()?;
     let fouled_height = fouled_height(&spec)?;
     let wall = mixture::medium(&spec, &spec.tank.wall_material)?;
     let (bed, bulk) = mixture::bed(&spec, fouled_height)?;
@@ -106,7 +112,7 @@ pub fn resolve_with(spec: &SceneSpec, spheres: Option<SphereBed>) -> Result<Scen
     let stones = Stones { packing: packing.as_ref(), spheres: spheres.as_ref() };
     let fouling = fouling.map(|fouling| report(&spec, fouling, fouled_height, stones)).transpose()?;
     let arrivals = arrivals(spec.antenna.height, &layers);
-    Ok(Scene { adsorption, packing, spheres, wall, bed, bulk, layers, arrivals, fouling, packing_seconds, spec })
+    Ok(Scene { adsorption, packing, spheres, pulse, wall, bed, bulk, layers, arrivals, fouling, packing_seconds, spec })
 }
 
 /// The input of the adsorption that a scene asks for.
@@ -123,6 +129,20 @@ pub fn rsa_input(spec: &SceneSpec, voids: Porosity) -> Result<RsaInput, SceneErr
         input: spec.packing.input,
         strip: spec.packing.strip,
     })
+}
+
+/// Reads the file of a pulse.
+fn read_pulse(file: &Path) -> Result<Sampled, SceneError> {
+    let text = files::read_text(file)?;
+    let wrong = |line: usize, what: String| SceneError::Pulse { file: file.into(), line, what };
+    let table = PulseTable::read(&text).map_err(|error| wrong(error.line, error.what))?;
+    let Some(times) = table.times else {
+        return Err(wrong(1, "the first column is not called `time`".into()));
+    };
+    let [(_, values)] = <[_; 1]>::try_from(table.pulses)
+        .map_err(|pulses| wrong(1, format!("there are {} pulses, where a scene has one", pulses.len())))?;
+    Sampled::new(times, values, Between::Linear, Beyond::Value(0.0))
+        .ok_or_else(|| wrong(2, "the times do not grow from line to line".into()))
 }
 
 /// Puts every material that the scene names into its table, so that the file that is kept holds all values.

@@ -279,6 +279,10 @@ pub struct AntennaSpec {
     pub frequency: Hertz,
     /// Pulse.
     pub waveform: WaveformKind,
+    /// File of a pulse that is used in place of `waveform`: a line `time NAME`, then times in seconds and amplitudes, as
+    /// `pulse from-plate` writes it and gprMax's `#excitation_file` reads it. `frequency` stays the nominal one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pulse: Option<std::path::PathBuf>,
     /// Height above the bed's nominal surface.
     pub height: Metres,
     /// Distance between source and receiver. Assumed: not published; small, so that echoes come at normal incidence.
@@ -293,6 +297,7 @@ impl Default for AntennaSpec {
         Self {
             frequency: Hertz(1e9),
             waveform: WaveformKind::Ricker,
+            pulse: None,
             height: Metres(0.40),
             separation: Metres(0.04),
             position: None,
@@ -487,16 +492,16 @@ impl SceneSpec {
         Ok(spec)
     }
 
-    /// Reads a scene file; a relative `packing.file` counts from the scene file's folder.
+    /// Reads a scene file; a relative `packing.file` or `antenna.pulse` counts from the scene file's folder.
     ///
     /// # Errors
     /// When it cannot be read, or see [`from_toml`](Self::from_toml).
     pub fn read(path: &Path) -> Result<Self, SceneError> {
         let mut spec = Self::from_toml(&files::read_text(path)?, path)?;
-        if let (Some(file), Some(folder)) = (&mut spec.packing.file, path.parent())
-            && file.is_relative()
-        {
-            *file = folder.join(&*file);
+        for file in [&mut spec.packing.file, &mut spec.antenna.pulse].into_iter().flatten() {
+            if let (true, Some(folder)) = (file.is_relative(), path.parent()) {
+                *file = folder.join(&*file);
+            }
         }
         Ok(spec)
     }

@@ -83,8 +83,21 @@ pub fn plate_reference(
     scene: &Scene,
     on_progress: OnProgress<'_>,
 ) -> Result<PlateReference, EchoError> {
+    plate_reference_of(solver, scene, &|model| model, on_progress)
+}
+
+/// As [`plate_reference`], with something done to each model before it runs: the antenna turned, for example.
+///
+/// # Errors
+/// When a run fails.
+pub fn plate_reference_of(
+    solver: &dyn Forward,
+    scene: &Scene,
+    turn: &dyn Fn(Model) -> Model,
+    on_progress: OnProgress<'_>,
+) -> Result<PlateReference, EchoError> {
     let mut model = raster::antenna_alone(&raster::build_model(scene)?);
-    let free_space = solve(solver, &model, on_progress)?;
+    let free_space = solve(solver, &turn(model.clone()), on_progress)?;
     let placement = Placement::of(&scene.spec);
     let surface = placement.bed_origin[1] + scene.spec.tank.height.si();
     let [nx, _, nz] = [0, 1, 2].map(|axis| model.grid.cells[axis] as f64 * model.grid.spacing[axis]);
@@ -94,7 +107,7 @@ pub fn plate_reference(
         material: MaterialId::PEC,
         averaging: false,
     });
-    let with_plate = solve(solver, &model, on_progress)?;
+    let with_plate = solve(solver, &turn(model), on_progress)?;
     let (plate_echo, _) = compare::subtract_reference(&with_plate, &free_space);
     let expected = ExpectedEchoes { no_direct_wave: true, ..Default::default() };
     let echo = pick("plate reference", compare::pick_echoes(&plate_echo, &expected).surface)?;
@@ -150,7 +163,14 @@ impl PlateReference {
             no_noise: true,
             ..Default::default()
         };
-        let picks = compare::pick_echoes(&echoes_only, &expected);
+        self.echoes_of(&compare::pick_echoes(&echoes_only, &expected))
+    }
+
+    /// The echoes of picks in a trace without its direct wave.
+    ///
+    /// # Errors
+    /// When an echo does not stand out.
+    pub fn echoes_of(&self, picks: &compare::Picks) -> Result<Echoes, EchoError> {
         Ok(Echoes {
             surface: self.time_of(&pick("surface", picks.surface)?),
             plate: self.time_of(&pick("plate", picks.plate)?),

@@ -3,6 +3,7 @@
 mod agreement;
 mod arrivals;
 mod benedetto;
+mod bias;
 mod echoes;
 mod irazabal;
 mod spheres;
@@ -30,6 +31,9 @@ pub struct ValidateArgs {
     /// Folder for figures; none are drawn without it.
     #[arg(long, value_name = "FOLDER")]
     pub out: Option<PathBuf>,
+    /// Settled spheres for `permittivity-bias` (`packing.json` of `pack --preset bed --packing dem`) [default: settles them first].
+    #[arg(long, value_name = "FILE")]
+    pub bed: Option<PathBuf>,
     /// Python interpreter that has gprMax, in place of the private one.
     #[arg(long, value_name = "PYTHON", env = "BALLAST_GPR_GPRMAX_PYTHON")]
     pub gprmax_python: Option<PathBuf>,
@@ -57,6 +61,9 @@ pub enum CaseName {
     Spheres,
     /// Echoes of real packings, ten seeds, clean and fouled, true and equivalent stones (full tier).
     TankEchoes,
+    /// Bias of every permittivity estimate on beds of stones, both polarisations and space, four fouling heights (full tier:
+    /// minutes, and as many for the spheres to settle).
+    PermittivityBias,
 }
 
 /// How much to run.
@@ -104,6 +111,7 @@ pub fn run(args: &ValidateArgs) -> Result<(), CliError> {
             CaseName::Gprmax => agreement::validate(args)?,
             CaseName::Irazabal2017 => irazabal::validate(args.tier)?,
             CaseName::Spheres => spheres::validate()?,
+            CaseName::PermittivityBias => bias::validate(args.out.as_deref(), args.bed.as_deref())?,
             CaseName::TankEchoes => echoes::validate(args.out.as_deref())?,
         };
         misses += report.misses;

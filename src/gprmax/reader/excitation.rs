@@ -7,7 +7,7 @@ use super::lines::Command;
 use super::sources::add_waveform;
 use super::values::Parameters;
 use crate::files::read_text;
-use crate::model::{Between, Beyond, Model, Sampled, Waveform, WaveformKind};
+use crate::model::{Between, Beyond, Model, PulseTable, Sampled, Waveform, WaveformKind};
 
 /// Reads an `#excitation_file`: names in the first row, numbers below. A first column called `time` holds the times of the
 /// samples; without it there is one for each time step, and zeros after the last.
@@ -17,43 +17,17 @@ pub(super) fn excitation_file(model: &mut Model, path: &Path, command: &Command<
     let file = path.with_file_name("").join(p.word(0)?);
     let text = read_text(&file)?;
     let wrong = |line: usize, what: String| Problem::Excitation { file: file.clone(), line, what };
-    let mut rows = text.lines().enumerate().filter(|(_, row)| !row.trim().is_empty());
-    let names: Vec<&str> = rows.next().map_or(vec![], |(_, row)| row.split_whitespace().collect());
-    let mut columns = vec![vec![]; names.len()];
-    for (index, row) in rows {
-        let line = index + 1;
-        let words: Vec<_> = row.split_whitespace().collect();
-        if words.len() != names.len() {
-            return Err(wrong(
-                line,
-                format!("there are {} numbers, but {} names in the first line", words.len(), names.len()),
-            ));
-        }
-        for (column, word) in columns.iter_mut().zip(words) {
-            let number = word.parse::<f64>().ok().filter(|number| number.is_finite());
-            column.push(number.ok_or_else(|| wrong(line, format!("`{word}` is not a number")))?);
-        }
-    }
-    let timed = names.first() == Some(&"time");
-    if names.len() < 1 + usize::from(timed) {
-        return Err(wrong(1, "there is no name of a pulse".into()));
-    }
-    let samples = columns[0].len();
-    if samples < 2 {
-        return Err(wrong(samples + 1, format!("there are {samples} samples, at least 2 are needed")));
-    }
+    let mut table = PulseTable::read(&text).map_err(|error| wrong(error.line, error.what))?;
     let steps = model.iterations().max(2);
-    let times = if timed {
-        columns.remove(0)
-    } else {
-        columns.iter_mut().for_each(|column| column.resize(steps, 0.0));
+    let times = table.times.unwrap_or_else(|| {
+        table.pulses.iter_mut().for_each(|(_, column)| column.resize(steps, 0.0));
         (0..steps).map(|n| n as f64 * model.time_step()).collect()
-    };
-    for (name, values) in names.iter().skip(usize::from(timed)).zip(columns) {
+    });
+    for (id, values) in table.pulses {
         let sampled = Sampled::new(times.clone(), values, between, beyond);
         let sampled = sampled.ok_or_else(|| wrong(2, "the times do not grow from line to line".into()))?;
         let kind = WaveformKind::User(sampled);
-        add_waveform(model, Waveform { id: (*name).into(), kind, amplitude: 1.0, frequency: 0.0 })?;
+        add_waveform(model, Waveform { id, kind, amplitude: 1.0, frequency: 0.0 })?;
     }
     Ok(())
 }

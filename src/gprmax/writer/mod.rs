@@ -11,4 +11,5 @@ mod voxel_files;
 
 pub use error::WriteError;
 pub use number::number;
+pub use pulse_files::excitation_text;
 pub use render::{DEFAULT_TEMPLATE, InputOptions, write_input};

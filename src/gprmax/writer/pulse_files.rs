@@ -15,6 +15,15 @@ pub(super) fn sampled(waveform: &Waveform) -> Option<&Sampled> {
     }
 }
 
+/// The text of an `#excitation_file` with one pulse: `time NAME`, then times, s, and samples.
+pub fn excitation_text(name: &str, pulse: &Sampled) -> String {
+    let mut text = format!("time {name}\n");
+    for (time, value) in pulse.times().iter().zip(pulse.values()) {
+        text.push_str(&format!("{} {}\n", number(*time), number(*value)));
+    }
+    text
+}
+
 /// One file beside an input file for each pulse given as samples.
 pub(super) struct PulseFiles<'a> {
     pub model: &'a Model,
@@ -35,12 +44,8 @@ impl PulseFiles<'_> {
         let mut written = vec![];
         for (index, waveform) in self.model.waveforms.iter().enumerate() {
             let Some(sampled) = sampled(waveform) else { continue };
-            let mut text = format!("time {}\n", waveform.id);
-            for (time, value) in sampled.times().iter().zip(sampled.values()) {
-                text.push_str(&format!("{} {}\n", number(*time), number(*value)));
-            }
             let path = folder.join(self.name(index));
-            write_bytes(&path, text.as_bytes())?;
+            write_bytes(&path, excitation_text(&waveform.id, sampled).as_bytes())?;
             written.push(path);
         }
         Ok(written)
