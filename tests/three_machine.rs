@@ -11,8 +11,8 @@ use ballast_gpr::fdtd::{
     CheckpointEvent, Checkpoints, Fdtd, FdtdError, InstructionSet, Keeping, Precision, predict_three,
 };
 use ballast_gpr::model::{
-    Axis, DebyePole, Excitation, Grid, HertzianDipole, Material, MaterialId, Model, Object, Receiver, Source,
-    TimeWindow, Waveform, WaveformKind, paint3,
+    Averaging, Axis, DebyePole, Excitation, Grid, HertzianDipole, Material, MaterialId, Model, Object, Painted3,
+    Receiver, Source, TimeWindow, Waveform, WaveformKind, paint3,
 };
 use ballast_gpr::trace::Traces;
 
@@ -85,6 +85,35 @@ fn bits_do_not_depend_on_the_machine() {
             assert!(sets > 0);
         }
     }
+}
+
+/// Axes that are coupled on surfaces: neither threads and instructions nor what no wave has reached change a bit; on flat
+/// faces nothing is coupled, and only the time step is another one.
+#[test]
+fn coupled_axes_keep_their_bits() {
+    let mut model = everything(5);
+    model.averaging = Averaging::Tensors;
+    let painted = paint3(&model).unwrap();
+    assert!(painted.couplings.len() > 1000, "{}", painted.couplings.len());
+    for precision in [Precision::Single, Precision::Double] {
+        let fdtd = Fdtd { precision, ..Fdtd::default() };
+        let run = |skip| fdtd.solve_stepping_three(&model, &painted, skip, &|_| ControlFlow::Continue(())).unwrap().0;
+        let plain = run(false);
+        assert!(run(true) == plain);
+        for threads in [1, 2, 4] {
+            assert!(solve(&model, precision, threads, InstructionSet::Scalar) == plain, "{threads} threads");
+        }
+    }
+    let uncoupled = Painted3 { couplings: vec![], ..painted.clone() };
+    let without = |painted: &Painted3| {
+        Fdtd::default().solve_painted_three(&model, painted, &|_| ControlFlow::Continue(())).unwrap().0
+    };
+    assert!(without(&uncoupled) != without(&painted));
+    model.objects.retain(|object| matches!(object, Object::Box { .. }));
+    let flat = paint3(&model).unwrap();
+    assert!(flat.couplings.is_empty());
+    model.averaging = Averaging::Shapes;
+    assert!(paint3(&model).unwrap() == flat);
 }
 
 /// A Debye pole without strength and a magnetic material like free space cost nothing and change no bit.

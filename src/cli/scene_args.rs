@@ -140,6 +140,9 @@ pub enum SmoothingFlag {
     Area,
     /// Each edge the mean over its own square, from the true discs (built-in solver only).
     Shapes,
+    /// As `shapes`, and in three dimensions the axes coupled on surfaces that lie aslant, for errors of second
+    /// order in steps 5 % shorter; not with `--order 4`.
+    Tensors,
 }
 
 impl SceneArgs {
@@ -231,6 +234,7 @@ impl SceneArgs {
                 SmoothingFlag::Edges => Smoothing::Edges,
                 SmoothingFlag::Area => Smoothing::Area,
                 SmoothingFlag::Shapes => Smoothing::Shapes,
+                SmoothingFlag::Tensors => Smoothing::Tensors,
             }),
         );
         Ok(())

@@ -24,15 +24,19 @@ pub enum Averaging {
     /// As `Volumes`, and between the arithmetic and the harmonic mean as the surface in the box lies: an edge along a
     /// surface takes the first, one across it the second. In a plane edges lie along all surfaces.
     Shapes,
+    /// As `Shapes`, and on surfaces that lie aslant the axes are coupled, which makes errors fall with the square of the cell;
+    /// time steps are shorter by 5 %. With one component of E, and with differences of fourth order, the same as `Shapes`.
+    Tensors,
 }
 
 impl Averaging {
-    /// `cells`, `volumes` or `shapes`.
+    /// `cells`, `volumes`, `shapes` or `tensors`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Cells => "cells",
             Self::Volumes => "volumes",
             Self::Shapes => "shapes",
+            Self::Tensors => "tensors",
         }
     }
 }

@@ -47,13 +47,13 @@ pub use paint::{
     Finished, PaintError, Parts, check_grid, check_two_dimensional, edge_flag, face_flag, paint, paint_finished, paint3,
 };
 pub use painted::Painted;
-pub use painted3::Painted3;
+pub use painted3::{Coupling, Painted3};
 pub use palette::{EdgeMaterial, FaceMaterial, MagneticAveraging};
 pub use pulse_table::{PulseTable, PulseTableError};
 pub use route::{MOST_POLES_IN_A_PLANE, Route};
 pub use sampled::{Between, Beyond, Sampled};
 pub use snapshot::{Snapshot, SnapshotCells, SnapshotError, SnapshotFormat, SnapshotTime};
 pub use source::{Axis, Excitation, HertzianDipole, MagneticDipole, Receiver, Source, VoltageSource};
-pub use spec::{Model, TimeWindow};
+pub use spec::{COUPLED_STABLE_SHARE, Model, TimeWindow};
 pub use view::{GeometryView, ViewKind};
 pub use waveform::{Waveform, WaveformKind};

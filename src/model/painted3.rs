@@ -22,6 +22,21 @@ pub struct Painted3 {
     pub faces: [Indices; 3],
     /// How many x, y and z edges hold the mean of two or more different materials.
     pub averaged_edges: [usize; 3],
+    /// What couples the axes at nodes on surfaces, in the order of the nodes; empty but for
+    /// [`Averaging::Tensors`](super::Averaging::Tensors).
+    pub couplings: Vec<Coupling>,
+}
+
+/// The part of the inverse permittivity at a node on a surface that lets D along one axis make E along another.
+///
+/// Kottke, Farjadpour & Johnson 2008 (doi:10.1103/PhysRevE.77.036611): with the normal `n` of the surface and means over the
+/// box around the node, `(1/eps)_ab = n_a n_b (<1/eps> - 1/<eps>)`, `a != b`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coupling {
+    /// Place of the node.
+    pub node: usize,
+    /// Between y and z, z and x, x and y.
+    pub inverse: [f64; 3],
 }
 
 impl Painted3 {
@@ -54,7 +69,7 @@ impl Painted3 {
     /// Memory that it takes, bytes.
     pub fn bytes(&self) -> usize {
         let indices: usize = self.edges.iter().chain(&self.faces).map(Indices::bytes).sum();
-        indices + self.solid.len() * size_of::<MaterialId>()
+        indices + self.solid.len() * size_of::<MaterialId>() + self.couplings.len() * size_of::<Coupling>()
     }
 
     /// The planes of cells `planes` only, as a grid of its own; `averaged_edges` stays that of the whole.
@@ -65,6 +80,8 @@ impl Painted3 {
         let [_, ny, nz] = self.cells;
         let nodes = planes.start * (ny + 1) * (nz + 1)..(planes.end + 1) * (ny + 1) * (nz + 1);
         let cut = |list: &Indices| if list.is_empty() { list.clone() } else { list.cut(nodes.clone()) };
+        let within = self.couplings.iter().filter(|coupling| nodes.contains(&coupling.node));
+        let couplings = within.map(|coupling| Coupling { node: coupling.node - nodes.start, ..*coupling }).collect();
         Self {
             cells: [planes.len(), ny, nz],
             solid: self.solid[planes.start * ny * nz..planes.end * ny * nz].into(),
@@ -73,6 +90,7 @@ impl Painted3 {
             face_palette: self.face_palette.clone(),
             faces: self.faces.each_ref().map(cut),
             averaged_edges: self.averaged_edges,
+            couplings,
         }
     }
 }

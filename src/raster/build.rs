@@ -61,6 +61,7 @@ pub fn build_model(scene: &Scene) -> Result<Model, RasterError> {
     model.order = spec.grid.order;
     match spec.grid.smoothing {
         Smoothing::Shapes => model.averaging = Averaging::Shapes,
+        Smoothing::Tensors => model.averaging = Averaging::Tensors,
         // In space a cell has no share of its own: each edge takes the mean over its box.
         Smoothing::Area if in_space => model.averaging = Averaging::Volumes,
         _ => {}
@@ -197,7 +198,9 @@ impl Builder {
     fn stones(&mut self, scene: &Scene, placement: &Placement) -> Result<(), RasterError> {
         match (scene.spec.grid.geometry, scene.spec.grid.smoothing) {
             (GeometryKind::Cylinders, Smoothing::Area) => return Err(RasterError::AreaNeedsVoxels),
-            (GeometryKind::Cylinders, _) | (_, Smoothing::Shapes) => self.cylinders(scene, placement),
+            (GeometryKind::Cylinders, _) | (_, Smoothing::Shapes | Smoothing::Tensors) => {
+                self.cylinders(scene, placement)
+            }
             (GeometryKind::Voxels, smoothing) => self.voxels(scene, placement, smoothing),
         }
         Ok(())

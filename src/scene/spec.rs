@@ -327,6 +327,8 @@ pub enum Smoothing {
     Area,
     /// Each edge takes the mean over its own square from the true discs (built-in solver only; stones as `#cylinder` lines).
     Shapes,
+    /// As `Shapes`, and in space the axes are coupled on surfaces that lie aslant, for errors of second order.
+    Tensors,
 }
 
 impl Smoothing {
@@ -337,6 +339,7 @@ impl Smoothing {
             Self::Edges => "edges",
             Self::Area => "area",
             Self::Shapes => "shapes",
+            Self::Tensors => "tensors",
         }
     }
 }

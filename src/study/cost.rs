@@ -299,7 +299,7 @@ fn limit(traces: &[&AScan]) -> Option<(AScan, f64, f64)> {
     Some((AScan { samples, ..(*fine).clone() }, order, last))
 }
 
-/// Runs a setting, and once per cell size and order the antenna alone; the difference holds the echoes alone.
+/// Runs a setting, and once per cell size, order and time step the antenna alone; the difference holds the echoes alone.
 fn one_run(
     subject: &dyn CostSubject,
     setting: CostSetting,
@@ -311,14 +311,13 @@ fn one_run(
     let started = Instant::now();
     let trace = radar_trace(solver.solver, &model, subject.component(), on_progress)?;
     let seconds = started.elapsed().as_secs_f64();
-    let direct = match alone {
+    // Tensors take shorter steps than the other smoothings.
+    let direct = match alone.take().filter(|direct| direct.time_step == trace.time_step) {
         Some(direct) => direct,
-        None => {
-            let antenna = raster::antenna_alone(&model);
-            alone.insert(radar_trace(solver.solver, &antenna, subject.component(), on_progress)?)
-        }
+        None => radar_trace(solver.solver, &raster::antenna_alone(&model), subject.component(), on_progress)?,
     };
-    let (echoes, _) = compare::subtract_reference(&trace, direct);
+    let (echoes, _) = compare::subtract_reference(&trace, &direct);
+    *alone = Some(direct);
     let window = subject.window();
     let trace = compare::resample(&echoes, Seconds(0.0), Seconds(COMMON_STEP), (window / COMMON_STEP) as usize);
     let cell_steps = (model.grid.cell_count() * model.iterations()) as u64;

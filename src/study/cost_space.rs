@@ -87,6 +87,7 @@ impl CostSubject for CostBed {
             Smoothing::None | Smoothing::Edges => Averaging::Cells,
             Smoothing::Area => Averaging::Volumes,
             Smoothing::Shapes => Averaging::Shapes,
+            Smoothing::Tensors => Averaging::Tensors,
         };
         let averaging = setting.smoothing != Smoothing::None;
         let soil = model.add_material(Material::dielectric("soil", 8.0, 0.005));

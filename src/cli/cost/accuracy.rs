@@ -110,6 +110,7 @@ fn smoothing(point: &CostPoint) -> &'static str {
         Smoothing::Edges => "edges",
         Smoothing::Area => "area",
         Smoothing::Shapes => "shapes",
+        Smoothing::Tensors => "tensors",
     }
 }
 
@@ -175,6 +176,7 @@ fn figure(table: &CostTable, curve: &Curve) -> Chart {
         (Smoothing::Edges, "edge means"),
         (Smoothing::Area, if matches!(curve.own, OwnTable::Space) { "volume means" } else { "area means" }),
         (Smoothing::Shapes, "true shapes"),
+        (Smoothing::Tensors, "tensors"),
     ];
     for (index, (kind, name)) in kinds.into_iter().enumerate() {
         for (order, style) in [(Order::Second, Stroke::Dashed), (Order::Fourth, Stroke::LineAndPoints)] {

@@ -105,6 +105,18 @@ impl<T: Real> Fields<T> {
         }
     }
 
+    /// Rows `j - 1` and `j` of each field, Ex, Ey, Ez, Hx, Hy, Hz, one behind the other.
+    pub fn two_rows(&mut self, j: usize) -> [&mut [T]; 6] {
+        let (apart, width) = (self.sheets.apart(), self.sheets.width());
+        let (_, mut rest) = self.sheets.split_mut(0, j - 1, 0);
+        std::array::from_fn(|field| {
+            let own = if field < 5 { apart } else { 2 * width };
+            let (rows, others) = std::mem::take(&mut rest).split_at_mut(own);
+            rest = others;
+            &mut rows[..2 * width]
+        })
+    }
+
     /// `n` nodes of row `j` of E along x, y, z, from node `k` on.
     #[inline(always)]
     pub fn e_mut(&mut self, j: usize, k: usize, n: usize) -> [&mut [T]; 3] {

@@ -7,6 +7,7 @@ use super::super::slab::Slab;
 use super::super::state::{Numbers, State};
 use super::absorbing::{Absorbing, Columns, Profiles, profiles};
 use super::arena::Arena;
+use super::couple::Couples;
 use super::drive::{Act, Drive};
 use super::fields::Fields;
 use super::grades::{Grades, Table};
@@ -30,6 +31,8 @@ pub struct Plane<T> {
     /// Sources that act on E, sorted by row, then in the order in which they act.
     pub drives: Vec<PlaneDrive<T>>,
     pub dispersion: Option<Dispersion<T>>,
+    /// What couples the axes on surfaces.
+    pub couples: Option<Couples<T>>,
     pub probes: Vec<Probe>,
 }
 
@@ -117,7 +120,18 @@ pub struct Shared<T> {
 
 impl<T: Number> State for Plane<T> {
     fn visit(&mut self, visitor: &mut dyn FnMut(Numbers<'_>)) {
-        let Self { i: _, fields, grades: _, magnetic: _, absorbing, magnets: _, drives: _, dispersion, probes } = self;
+        let Self {
+            i: _,
+            fields,
+            grades: _,
+            magnetic: _,
+            absorbing,
+            magnets: _,
+            drives: _,
+            dispersion,
+            couples: _,
+            probes,
+        } = self;
         fields.visit(visitor);
         absorbing.visit(visitor);
         dispersion.visit(visitor);
@@ -191,6 +205,7 @@ impl<T: Number> Plane<T> {
             magnets: vec![],
             drives: vec![],
             dispersion: None,
+            couples: None,
             probes: vec![],
         }
     }
@@ -229,6 +244,7 @@ impl<T: Number> Plane<T> {
             magnets,
             drives,
             dispersion: Dispersion::new(setup, i),
+            couples: Couples::new(setup, i),
             probes: probes.map(probe).collect(),
         }
     }

@@ -10,6 +10,7 @@ use super::super::predict::{Prediction, TimeShares};
 use super::super::{Fdtd, FdtdError, Precision, Stats};
 use super::absorbing::Absorbing;
 use super::camera::{Camera, Look};
+use super::couple::Couples;
 use super::fields::Fields;
 use super::fourth;
 use super::grades::Grades;
@@ -268,6 +269,7 @@ fn bytes<T: Number>(setup: &Setup3<'_>) -> u64 {
         + magnetic
         + snapshot
         + Grades::<T>::bytes(setup)
+        + Couples::<T>::bytes(setup)
         + Absorbing::<T>::bytes(setup, width)
         + Cones::bytes(setup.painted.cells)
         + (poles * size_of::<T>() + samples * setup.iterations) as u64

@@ -7,6 +7,7 @@ use super::super::coefficients::{Edge, check_electric, check_resonances, edge_of
 use super::super::setup::node_in_grid;
 use super::super::slab::Slab;
 use super::camera::Look;
+use super::couple::Couple;
 use super::drive::{Drive, Load, drives, loads};
 use super::fourth;
 use crate::model::{
@@ -28,6 +29,8 @@ pub struct Setup3<'a> {
     /// At x0, y0, z0, xmax, ymax, zmax.
     pub slabs: [Slab; 6],
     pub drives: Vec<Drive>,
+    /// What couples the axes on surfaces, in the order of the nodes.
+    pub couples: Vec<Couple>,
     /// Edges with resistors across them.
     pub loads: Vec<Load>,
     /// Node of each receiver.
@@ -109,7 +112,8 @@ impl<'a> Setup3<'a> {
                 receiver.name.clone().unwrap_or(format!("receiver {}", index + 1))
             })
         });
-        let setup = Self {
+        let mut setup = Self {
+            couples: vec![],
             drives,
             loads,
             receivers: receivers.collect::<Result<_, _>>()?,
@@ -125,6 +129,7 @@ impl<'a> Setup3<'a> {
             spacing: model.grid.spacing,
             active: Active::of(model),
         };
+        setup.couples = Couple::all(&setup);
         match fourth::refusal(model, &setup) {
             Some(what) if model.order == Order::Fourth => Err(FdtdError::OrderInThree { order: model.order, what }),
             _ => Ok(setup),
@@ -142,7 +147,8 @@ impl<'a> Setup3<'a> {
 
     /// By how many cells E moves in one step: see `reach`.
     pub fn pace(&self) -> i32 {
-        1
+        // Between edges whose axes are coupled lies one cell more.
+        if self.couples.is_empty() { 1 } else { 2 }
     }
 
     /// Frees the lists of cells, edges and faces where nobody else holds them: once the planes are built, nothing needs them.
@@ -150,7 +156,9 @@ impl<'a> Setup3<'a> {
         if let Cow::Owned(painted) = &mut self.painted {
             let none = || std::array::from_fn(|_| Indices::with_capacity(0));
             (painted.solid, painted.edges, painted.faces) = (vec![], none(), none());
+            painted.couplings = vec![];
         }
+        self.couples = vec![];
     }
 
     /// Index into `edges` of the edge along an axis from the node at a place in the list of edges.
@@ -192,8 +200,13 @@ impl<'a> Setup3<'a> {
     /// `ca` and `cb` of an entry of the palette for the edges along an axis.
     pub fn coefficients(&self, axis: usize, entry: usize) -> [f64; 2] {
         let edge = &self.edges[entry];
+        [edge.ca, self.scale_of_curl(axis, edge.source)]
+    }
+
+    /// What takes the scaled curl along an axis where a unit of current density takes `source` from E.
+    pub fn scale_of_curl(&self, axis: usize, source: f64) -> f64 {
         let ([a, b], d) = (OTHERS[axis], self.spacing);
-        [edge.ca, edge.source * d[axis] / (d[a] * d[b]) * self.current()[b]]
+        source * d[axis] / (d[a] * d[b]) * self.current()[b]
     }
 
     /// What the second difference of the curl is multiplied by, for the edges along an axis.

@@ -22,6 +22,7 @@ use super::super::state::{Numbers, State};
 use super::absorbing::Absorbing;
 use super::arena::Arena;
 use super::camera::Camera;
+use super::couple::couple;
 use super::fields::Fields;
 use super::instructions::step;
 use super::plane::{Plane, Probe, Scratch, Shared};
@@ -305,9 +306,12 @@ impl<T: Number> Team<'_, T> {
         let (mut found, last) = (plane.record(number, &rows, self.limit), number + 1 == self.setup.iterations);
         if !last && self.shared.cones.touches(i, number) {
             let (west, east) = (read(&self.planes[i]), read(&self.planes[i + 2]));
-            let rows = rows.clone();
-            let action = Step { shared: self.shared, step: number, rows, west: &west, east: &east };
+            let action = Step { shared: self.shared, step: number, rows: rows.clone(), west: &west, east: &east };
             step(self.shared.set(), &action, &mut plane, scratch);
+            drop(west);
+            if plane.couples.as_ref().is_some_and(|couples| couples.are_in(&rows)) {
+                couple(self.shared, number, &rows, &mut plane, &mut write(&self.planes[i]));
+            }
         }
         if last || number % STEPS_BETWEEN_SCANS == STEPS_BETWEEN_SCANS - 1 {
             found = found.or_else(|| plane.find_beyond(self.shared, &rows, self.limit));

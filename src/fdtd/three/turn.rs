@@ -4,7 +4,7 @@
 //! y has long rows and many planes, one or two rows in each. The axes move in cyclic order, so that no sign changes.
 
 use super::super::FdtdError;
-use crate::model::{Axis, Grid, Model, Painted3, Receiver, Snapshot, SnapshotError, Source};
+use crate::model::{Axis, Coupling, Grid, Model, Painted3, Receiver, Snapshot, SnapshotError, Source};
 use crate::trace::{Component, FieldSnapshot, Traces};
 use crate::units::Metres;
 
@@ -101,6 +101,13 @@ impl Turn {
             }
         }
         let of = |axis: usize| self.back().axis(axis);
+        let [_, py, pz] = painted.cells.map(|count| count + 1);
+        let couple = |coupling: &Coupling| {
+            let [i, j, k] = self.triple([coupling.node / (py * pz), coupling.node / pz % py, coupling.node % pz]);
+            Coupling { node: (i * (ny + 1) + j) * (nz + 1) + k, inverse: self.triple(coupling.inverse) }
+        };
+        let mut couplings: Vec<Coupling> = painted.couplings.iter().map(couple).collect();
+        couplings.sort_unstable_by_key(|coupling| coupling.node);
         Painted3 {
             cells,
             solid,
@@ -109,6 +116,7 @@ impl Turn {
             face_palette: painted.face_palette.clone(),
             faces: std::array::from_fn(|axis| painted.faces[of(axis)].picked(&nodes)),
             averaged_edges: self.triple(painted.averaged_edges),
+            couplings,
         }
     }
 

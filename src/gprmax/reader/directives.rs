@@ -26,6 +26,7 @@ pub(super) fn directives(text: &str) -> Result<Directives, (usize, Problem)> {
             Some(("averaging", "cells")) => asked.averaging = Averaging::Cells,
             Some(("averaging", "volumes")) => asked.averaging = Averaging::Volumes,
             Some(("averaging", "shapes")) => asked.averaging = Averaging::Shapes,
+            Some(("averaging", "tensors")) => asked.averaging = Averaging::Tensors,
             _ => return Err(unknown()),
         }
     }
@@ -41,6 +42,8 @@ mod tests {
         assert_eq!(directives("#title: a\n## a comment\n").unwrap(), Directives::default());
         let both = "## ballast-gpr: order 4\r\n## ballast-gpr: averaging shapes\n";
         assert_eq!(directives(both).unwrap(), Directives { order: Order::Fourth, averaging: Averaging::Shapes });
+        let tensors = directives("## ballast-gpr: averaging tensors\n").unwrap();
+        assert_eq!(tensors.averaging, Averaging::Tensors);
         for wrong in ["order 3", "averaging", "speed 9"] {
             let (line, problem) = directives(&format!("\n## ballast-gpr: {wrong}")).unwrap_err();
             assert_eq!(line, 2);

@@ -54,6 +54,7 @@ pub fn paint3(model: &Model) -> Result<Painted3, PaintError> {
         face_palette: whole.face_palette,
         faces: whole.faces,
         averaged_edges: whole.averaged,
+        couplings: vec![],
     };
     if model.averaging != Averaging::Cells {
         average_volumes(model, &mut painted)?;

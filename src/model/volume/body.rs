@@ -41,6 +41,15 @@ enum Shape<'a> {
     },
 }
 
+/// How a surface lies: products of the parts of its normal `n`, of length 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slope {
+    /// `n_x²`, `n_y²`, `n_z²`, which add up to 1.
+    pub squares: [f64; 3],
+    /// `n_y n_z`, `n_z n_x`, `n_x n_y`.
+    pub products: [f64; 3],
+}
+
 /// How a body lies to a box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Side {
@@ -263,16 +272,22 @@ impl<'a> Body<'a> {
         Some(ball_column_volume(of(0), of(1), (z - centre[2]) / radii[2]) / volume)
     }
 
-    /// Squares of the parts of its surface's normal along x, y, z, within a box that it cuts; they add up to 1.
-    pub fn normal_squared(&self, region: &Region) -> [f64; 3] {
+    /// How its surface lies within a box that it cuts.
+    pub fn slope(&self, region: &Region) -> Slope {
         let middle = region.middle();
-        let squared = |normal: [f64; 3]| {
+        let slope = |normal: [f64; 3]| {
             let length = dot(normal, normal);
-            if length > 0.0 { normal.map(|v| v * v / length) } else { [1.0 / 3.0; 3] }
+            if length <= 0.0 {
+                return Slope { squares: [1.0 / 3.0; 3], products: [0.0; 3] };
+            }
+            let product = |axis: usize| normal[OTHERS[axis][0]] * normal[OTHERS[axis][1]] / length;
+            Slope { squares: normal.map(|v| v * v / length), products: std::array::from_fn(product) }
         };
-        // Of the faces that pass through the box, each as much as the others.
-        let flat =
-            |is_cut: &dyn Fn(usize) -> bool| squared(std::array::from_fn(|axis| if is_cut(axis) { 1.0 } else { 0.0 }));
+        // Of the faces that pass through the box, each as much as the others, and each by itself.
+        let flat = |is_cut: &dyn Fn(usize) -> bool| Slope {
+            products: [0.0; 3],
+            ..slope(std::array::from_fn(|axis| if is_cut(axis) { 1.0 } else { 0.0 }))
+        };
         let face = |axis: usize| {
             let slack = NEGLIGIBLE * (region.high[axis] - region.low[axis]);
             let is_within = |at: f64| at > region.low[axis] + slack && at < region.high[axis] - slack;
@@ -281,15 +296,15 @@ impl<'a> Body<'a> {
         match self.shape {
             Shape::Box => flat(&face),
             Shape::Ball { centre, radii } => {
-                squared(std::array::from_fn(|axis| (middle[axis] - centre[axis]) / radii[axis].powi(2)))
+                slope(std::array::from_fn(|axis| (middle[axis] - centre[axis]) / radii[axis].powi(2)))
             }
             Shape::Rod { along, .. } if face(along) => flat(&|axis| axis == along),
             Shape::Rod { along, centre, .. } => {
-                squared(std::array::from_fn(|axis| if axis == along { 0.0 } else { middle[axis] - centre[axis] }))
+                slope(std::array::from_fn(|axis| if axis == along { 0.0 } else { middle[axis] - centre[axis] }))
             }
             Shape::Parts(ref parts) => {
                 let cut = parts.iter().filter(|part| part.side(region).is_none());
-                squared(cut.map(|part| part.normal(middle)).next().unwrap_or_default())
+                slope(cut.map(|part| part.normal(middle)).next().unwrap_or_default())
             }
             Shape::Cells { spacing, .. } => flat(&|axis| {
                 let at = |v: f64| ((v - self.low[axis]) / spacing[axis] + NEGLIGIBLE).floor();

@@ -2,11 +2,11 @@
 
 use rayon::prelude::*;
 
-use super::body::{Body, NEGLIGIBLE, Side};
+use super::body::{Body, NEGLIGIBLE, Side, Slope};
 use super::mix::Mixture;
 use super::part::Region;
 use crate::model::palette::{EdgeMaterial, Palette};
-use crate::model::{Averaging, Grid, Indices, MaterialId, Model, PaintError, Painted3};
+use crate::model::{Averaging, Coupling, Grid, Indices, MaterialId, Model, PaintError, Painted3};
 
 /// Gives the inner edges of a painted model their means over the true shapes. Conductors keep their cells and take no part
 /// in a mean; an edge with a dispersive medium takes the one material that fills most of its box; faces stay as they are.
@@ -35,6 +35,7 @@ pub(in crate::model) fn average_volumes(model: &Model, painted: &mut Painted3) -
         Indices::joined(&lists, &maps)
     });
     painted.averaged_edges = std::array::from_fn(|axis| planes.iter().map(|plane| plane.averaged[axis]).sum());
+    painted.couplings = planes.iter_mut().flat_map(|plane| std::mem::take(&mut plane.couplings)).collect();
     (painted.edges, painted.palette) = (edges, palette.into_entries());
     Ok(())
 }
@@ -51,6 +52,7 @@ struct Done {
     palette: Vec<EdgeMaterial>,
     edges: [Indices; 3],
     averaged: [usize; 3],
+    couplings: Vec<Coupling>,
 }
 
 /// What an edge holds.
@@ -126,7 +128,10 @@ impl Column {
     }
 }
 
-/// The box around the middle of an edge along an axis from a node.
+/// Stands for no axis: the box is that around a node.
+const NODE: usize = 3;
+
+/// The box around the middle of an edge along an axis from a node, or around the node.
 fn region(grid: &Grid, axis: usize, node: [usize; 3]) -> Region {
     let from: [f64; 3] = std::array::from_fn(|a| node[a] as f64 - if a == axis { 0.0 } else { 0.5 });
     Region {
@@ -178,7 +183,12 @@ impl Job<'_> {
                             None => mixture.fill(&region, &cutting, row.base[k], 1.0),
                         }
                         mixture.settle(|id| self.along(axis, id));
-                        self.value(&mixture, self.across(axis, &region, &cutting))
+                        let across = match self.model.averaging {
+                            // How far the edge lies across the surfaces in its box, `n_a²`.
+                            Averaging::Shapes | Averaging::Tensors => self.slope(&region, &cutting).squares[axis],
+                            _ => 0.0,
+                        };
+                        self.value(&mixture, across)
                     };
                     out.push(match value {
                         Some(Value::Pure(material)) => match last {
@@ -200,7 +210,56 @@ impl Job<'_> {
             }
             edges
         });
-        Done { palette: palette.into_entries(), edges, averaged }
+        let couplings = if self.model.couples_axes() { self.couplings(i, &mut row) } else { vec![] };
+        Done { palette: palette.into_entries(), edges, averaged, couplings }
+    }
+
+    /// What couples the axes at the nodes of a plane.
+    fn couplings(&self, i: usize, row: &mut Row) -> Vec<Coupling> {
+        let ([nx, ny, nz], grid) = (self.painted.cells, &self.model.grid);
+        let wide = region(grid, NODE, [i, 0, 0]);
+        let near = |body: &&Body<'_>| body.high[0] > wide.low[0] && body.low[0] < wide.high[0];
+        let bodies: Vec<&Body<'_>> = self.bodies.iter().filter(near).collect();
+        let (mut cutting, mut mixture, mut found) = (vec![], Mixture::default(), vec![]);
+        let inner = |node: usize, n: usize| node > 0 && node < n;
+        for j in (1..ny).filter(|_| inner(i, nx) && !bodies.is_empty()) {
+            self.lay(row, NODE, [i, j], &bodies);
+            let mut column = Column { known: None };
+            for k in (1..nz).filter(|&k| row.head[k] != NONE).collect::<Vec<_>>() {
+                let region = region(grid, NODE, [i, j, k]);
+                row.bodies(k, &bodies, &mut cutting);
+                mixture.parts.clear();
+                match row.only(k).and_then(|index| Some((index, column.share(index, bodies[index], &region)?))) {
+                    Some((index, share)) => mixture.fill_with(bodies[index].material, share, row.base[k]),
+                    None => mixture.fill(&region, &cutting, row.base[k], 1.0),
+                }
+                mixture.settle(|id| id);
+                let Some(excess) = self.excess(&mixture) else { continue };
+                let inverse = self.slope(&region, &cutting).products.map(|product| product * excess);
+                if inverse.iter().any(|value| value.abs() > NEGLIGIBLE) {
+                    found.push(Coupling { node: self.painted.node([i, j, k]), inverse });
+                }
+            }
+        }
+        found
+    }
+
+    /// By how much `<1/eps>` is more than `1/<eps>`; `None` where one material fills a box, or any conducts, relaxes or is
+    /// another one along another axis.
+    fn excess(&self, mixture: &Mixture) -> Option<f64> {
+        let of = |id: MaterialId| &self.model.materials[id.index()];
+        let plain = |id: MaterialId| {
+            let material = of(id);
+            !material.is_pec() && !material.is_dispersive() && (0..3).all(|axis| material.along(axis, id) == id)
+        };
+        if mixture.parts.len() < 2 || !mixture.parts.iter().all(|(id, _)| plain(*id)) {
+            return None;
+        }
+        let total: f64 = mixture.parts.iter().map(|(_, share)| share).sum();
+        let mean = |value: fn(f64) -> f64| {
+            mixture.parts.iter().map(|(id, share)| share / total * value(of(*id).eps_r)).sum::<f64>()
+        };
+        Some(mean(|eps_r| 1.0 / eps_r) - 1.0 / mean(|eps_r| eps_r))
     }
 
     /// Lays the bodies over the boxes of a row.
@@ -246,20 +305,22 @@ impl Job<'_> {
         self.model.materials[id.index()].along(axis, id)
     }
 
-    /// How far an edge lies across the surfaces in its box, `n_a²`: that of the bodies, by what they fill and leave free.
-    fn across(&self, axis: usize, region: &Region, bodies: &[&Body<'_>]) -> f64 {
-        match bodies {
-            _ if self.model.averaging != Averaging::Shapes => 0.0,
-            [body] => body.normal_squared(region)[axis],
-            _ => {
-                let weighed = bodies.iter().map(|body| {
-                    let share = body.share_of_part(region);
-                    (share * (1.0 - share) + NEGLIGIBLE, body.normal_squared(region)[axis])
-                });
-                let (sum, total) = weighed.fold((0.0, 0.0), |(s, t), (weight, n)| (s + weight * n, t + weight));
-                sum / total
-            }
+    /// How the surfaces in a box lie: those of the bodies, by what they fill and leave free.
+    fn slope(&self, region: &Region, bodies: &[&Body<'_>]) -> Slope {
+        if let [body] = bodies {
+            return body.slope(region);
         }
+        let (mut sum, mut total) = (Slope { squares: [0.0; 3], products: [0.0; 3] }, 0.0);
+        for body in bodies {
+            let (share, slope) = (body.share_of_part(region), body.slope(region));
+            let weight = share * (1.0 - share) + NEGLIGIBLE;
+            for axis in 0..3 {
+                sum.squares[axis] += weight * slope.squares[axis];
+                sum.products[axis] += weight * slope.products[axis];
+            }
+            total += weight;
+        }
+        Slope { squares: sum.squares.map(|v| v / total), products: sum.products.map(|v| v / total) }
     }
 
     /// What an edge holds that lies `across` the surfaces in its box (0: along them); `None` where conductors fill its box
