@@ -7,7 +7,7 @@ use crate::cli::checkpoint::{self, CheckpointArgs, Used};
 use crate::cli::error::CliError;
 use crate::cli::folder;
 use crate::fdtd::{FdtdError, Keeping, Snapshots};
-use crate::files::{FileError, create_folder, read_text, write_bytes};
+use crate::files::{FileError, create_folder, read_text, remove_half_written, write_bytes};
 use crate::gprmax;
 use crate::model::{Model, Snapshot};
 use crate::trace::FieldSnapshot;
@@ -89,6 +89,7 @@ impl Album {
             // What cannot be removed keeps its folder, and that is told.
             let _ = fs::remove_file(path);
         }
+        remove_half_written(&self.waiting);
         if let Err(error) = fs::remove_dir(&self.waiting) {
             eprintln!("warning: failed to remove `{}`: {error}", self.waiting.display());
         }

@@ -6,6 +6,9 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
+/// Beginning and end of the names under which files are written before they take their place.
+const HALF_WRITTEN: [&str; 2] = [".writing-", ".partial"];
+
 /// A file or folder that could not be read or written.
 #[derive(Debug, thiserror::Error)]
 #[error("{action} `{}`: {source}", path.display())]
@@ -50,7 +53,7 @@ pub fn write_together(files: &[(&Path, &[u8])]) -> Result<(), FileError> {
 fn staged(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<NamedTempFile, FileError> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".writing-").suffix(".partial");
+    builder.prefix(HALF_WRITTEN[0]).suffix(HALF_WRITTEN[1]);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt as _;
@@ -75,6 +78,19 @@ fn publish(temporary: NamedTempFile, path: &Path) -> Result<(), FileError> {
 /// What the system said, with the path.
 pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     write_atomically(path, |writer| writer.write_all(bytes))
+}
+
+/// Removes what a killed process left half-written in a folder that nobody else writes into now.
+pub fn remove_half_written(folder: &Path) {
+    let Ok(entries) = fs::read_dir(folder) else { return };
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        if name.starts_with(HALF_WRITTEN[0]) && name.ends_with(HALF_WRITTEN[1]) {
+            // What cannot be removed stays, and does no harm.
+            let _ = fs::remove_file(entry.path());
+        }
+    }
 }
 
 /// Reads a whole text file.

@@ -268,6 +268,9 @@ impl<'a> Bench<'a> {
                 // Neither need be there.
                 let _ = std::fs::remove_file(folder.join(name));
             }
+            if self.locked.is_some() {
+                files::remove_half_written(folder);
+            }
         }
     }
 
