@@ -220,12 +220,15 @@ pub fn cost_curve(
         let fine_enough = |(cell, (_, least)): &(Metres, &(Order, f64))| cell.si() >= least * (1.0 - 1e-9);
         each.filter(fine_enough).map(|(cell, (order, _))| (cell, *order)).collect()
     };
-    let total = smoothings.len() * solvers.iter().map(|solver| settings(solver).len()).sum::<usize>();
+    // Tensors are of second order only.
+    let with = |order: Order| smoothings.iter().filter(move |s| **s != Smoothing::Tensors || order == Order::Second);
+    let count = |solver| settings(solver).iter().map(|(_, order)| with(*order).count()).sum::<usize>();
+    let total = solvers.iter().map(count).sum();
     let mut runs: Vec<(CostPoint, AScan)> = Vec::new();
     for solver in solvers {
         for (cell, order) in settings(solver) {
             let mut alone = None;
-            for &smoothing in smoothings {
+            for &smoothing in with(order) {
                 let setting = CostSetting { cell, smoothing, order, double_precision: solver.double_precision };
                 runs.push(one_run(subject, setting, solver, &mut alone, on_progress)?);
                 on_point(runs.len(), total);

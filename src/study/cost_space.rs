@@ -123,8 +123,9 @@ impl CostSubject for CostBed {
         Component::Ey
     }
 
+    /// Tensors first: they alone are of second order here, so that their limit is the reference.
     fn smoothings(&self) -> &'static [Smoothing] {
-        &[Smoothing::Shapes, Smoothing::None, Smoothing::Edges, Smoothing::Area]
+        &[Smoothing::Tensors, Smoothing::Shapes, Smoothing::None, Smoothing::Edges, Smoothing::Area]
     }
 
     /// The fourth order to 2.5 mm: half of that would take as long as all else together.

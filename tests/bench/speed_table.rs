@@ -261,8 +261,9 @@ fn main() -> Outcome<()> {
         let pair = [(1.6e-3, Smoothing::Area, Order::Second), (1e-3, Smoothing::Edges, Order::Second)];
         bench.accuracy("2-D, 1 % error of the echoes", &plane, &[2e-3, 1e-3, 0.5e-3], pair, place)?;
         let space = CostBed::standard();
-        let pair = [(5e-3, Smoothing::Shapes, Order::Second), (1.25e-3, Smoothing::Edges, Order::Second)];
-        bench.accuracy("3-D, 15 % error of the echoes", &space, &[5e-3, 2.5e-3, 1.25e-3], pair, place)?;
+        // gprMax's rule is of first order in space: 1 % would take cells of a tenth of a millimetre. It gets 1.25 mm.
+        let pair = [(2e-3, Smoothing::Tensors, Order::Second), (1.25e-3, Smoothing::Edges, Order::Second)];
+        bench.accuracy("3-D, 1 % of the echoes, theirs 13 %", &space, &[5e-3, 2.5e-3, 1.25e-3], pair, place)?;
     }
     if asked("prediction") {
         println!("{:<34}{:>9}{:>10}{:>8}", "`explain`", "predicted", "measured", "off");
