@@ -218,3 +218,27 @@ fn the_help_tells_what_a_user_needs() {
     says(&["completions", "--help"], &["bash", "zsh", "fish"]);
     place.program().assert().code(2).stderr(predicate::str::contains("Usage: ballast-gpr <COMMAND>"));
 }
+
+/// A reader that goes away before anything is printed ends the program without a word.
+#[test]
+fn output_that_nobody_reads_is_no_fault() {
+    let place = Place::new();
+    let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("ballast-gpr"))
+        .args(["pack", "--list-gradings"])
+        .current_dir(place.path(""))
+        .stdout(std::process::Stdio::from(closed_pipe()))
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let code = child.wait().unwrap().code();
+    let mut said = String::new();
+    std::io::Read::read_to_string(&mut child.stderr.unwrap(), &mut said).unwrap();
+    assert_eq!((code, said.as_str()), (Some(141), ""));
+}
+
+/// The writing end of a pipe that has no reading end.
+fn closed_pipe() -> std::io::PipeWriter {
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    writer
+}

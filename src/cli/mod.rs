@@ -94,6 +94,7 @@ enum Command {
 
 /// Reads the command line, does what it says and returns the exit code.
 pub fn main() -> ExitCode {
+    interrupt::end_with_the_reader();
     let cli = Cli::parse();
     interrupt::listen();
     let outcome = match &cli.command {
